@@ -59,7 +59,7 @@ pub struct Residuals {
     pub noise: f64,
     /// Spatial covariance: root of the mean covariance of residuals within tiles, log units; `None` if only the
     /// noise was measured.
-    pub covariance: Option<f64>,
+    pub spatial_covariance: Option<f64>,
     /// Standard deviation of the image's own noise.
     pub image_noise: f64,
     /// Standard deviation of the image's log colours.
@@ -92,9 +92,11 @@ impl Residuals {
     /// The diagnosis that decides whether an alternative is tried. For another unit of depth it is never [`Diagnosis::VaryingAlbedo`].
     #[must_use]
     pub fn diagnose(&self, against: Alternative) -> Diagnosis {
-        let covary = |most: f64| self.covariance.is_some_and(|covariance| covariance > most);
+        let covary = |most: f64| self.spatial_covariance.is_some_and(|covariance| covariance > most);
         let (varies, is_explained) = match against {
-            Alternative::LocalContrast if self.covariance.is_none() => (self.noise > MIXED_NOISE, self.is_noise()),
+            Alternative::LocalContrast if self.spatial_covariance.is_none() => {
+                (self.noise > MIXED_NOISE, self.is_noise())
+            }
             Alternative::LocalContrast => (covary(MODEL_COVARIANCE), self.is_noise()),
             Alternative::Silhouettes => {
                 let purest = PURE_NOISE.max(PURE_SHARE * self.spread);
@@ -131,8 +133,8 @@ impl Residuals {
     /// albedo.
     #[must_use]
     pub fn have_less_covariance(&self, share: f64, others: &Self) -> bool {
-        let limit = others.covariance.map_or(MODEL_COVARIANCE, |theirs| MODEL_COVARIANCE.min(share * theirs));
-        self.covariance.is_some_and(|covariance| covariance < limit)
+        let limit = others.spatial_covariance.map_or(MODEL_COVARIANCE, |theirs| MODEL_COVARIANCE.min(share * theirs));
+        self.spatial_covariance.is_some_and(|covariance| covariance < limit)
     }
 }
 
@@ -182,7 +184,7 @@ mod tests {
     ];
 
     fn residuals([noise, covariance, image_noise, spread]: [f64; 4]) -> Residuals {
-        Residuals { noise, covariance: Some(covariance), image_noise, spread }
+        Residuals { noise, spatial_covariance: Some(covariance), image_noise, spread }
     }
 
     #[test]
@@ -195,8 +197,9 @@ mod tests {
 
     #[test]
     fn without_a_covariance_the_noise_alone_tells() {
-        let only =
-            |noise| Residuals { noise, covariance: None, image_noise: 0.01, spread: 0.4 }.diagnose(LocalContrast);
+        let only = |noise| {
+            Residuals { noise, spatial_covariance: None, image_noise: 0.01, spread: 0.4 }.diagnose(LocalContrast)
+        };
         assert_eq!([0.015, 0.06, 0.08].map(only), [Explained, ModelError, VaryingAlbedo]);
     }
 

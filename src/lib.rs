@@ -107,6 +107,7 @@ pub const CODES: &str = include_str!("codes.json");
 // | `shape/integration` | the surface from gradients of normals, on a mask | Harker and O'Leary's step |
 // | `shape/heights` | the surface from shading as a whole, for light under which single pixels are ambiguous | beyond the paper |
 // | `shape/refinement` | the depth view's own normals and depth, through `heights` | Eq. 17 to 19 |
+// | `lessons` | what only the lessons compute: one lamp, characteristic strips, the objective of one pixel | Eq. 6 |
 // | `pose/search` | the initial pose if nothing is known: all rotations, translations and scales, on a coarse grid | before Algorithm 1 |
 // | `pose/photometric` | the pose directly from the image, with the light projected out | beyond the paper |
 // | `pose/contrast` | the pose of an object with varying albedo, by local contrast in an orthographic image | beyond the paper |
@@ -131,6 +132,7 @@ mod check;
 mod diagnosis;
 mod error;
 mod estimator;
+mod lessons;
 mod light;
 #[macro_use]
 mod numeric;
@@ -160,10 +162,11 @@ pub use estimator::{Estimator, Finding, RefinementTask, Surface, Task, Worker};
 /// The pictures from which this crate's views can be made.
 #[cfg(feature = "image")]
 pub use image;
-pub use light::{
-    BasRelief, COEFFICIENTS, CoefficientMatrix, Lamp, Light, LightFit, LightFitter, LightGaussian, LightPrior,
-    second_order,
+pub use lessons::{
+    BasRelief, Form, Lamp, Minimum, PixelLandscape, ShadedImage, characteristic_strips, second_order,
+    surface_of_normals,
 };
+pub use light::{COEFFICIENTS, CoefficientMatrix, Light, LightFit, LightFitter, LightGaussian, LightPrior};
 /// The linear algebra of this crate's public types, in the version that they use.
 pub use nalgebra;
 pub use options::{LightSource, Options, Registration, Shading, Start, StartTolerance, Weights};
@@ -177,9 +180,8 @@ pub use pose::{
 pub use reason::{Activity, FoundBy, Reason};
 pub use report::{Objective, Stage, Status, StepReport};
 pub use shape::{
-    AnchorWeight, Anchors, Form, IntegrationOptions, IntegrationReport, IntegrationTermination, Integrator, Minimum,
-    PixelLandscape, Robustness, ShadedImage, ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights,
-    characteristic_strips, exposure_step, first_exposure, gradients, surface_of_normals,
+    AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, IntegrationTermination, Integrator, Robustness,
+    ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, exposure_step, first_exposure, gradients,
 };
 pub use view::{
     Camera, ColourImage, ColourSamples, ColourView, DepthMap, DepthNoise, DepthSamples, DepthView, Lens, Mark, Normals,

@@ -35,7 +35,7 @@ export const PARTS = [
     name: "following",
     what: "the rounds in which pose and albedo are improved in turn",
     changes: [
-      { file: "src/estimator/stages/contrasted.rs", from: "const ROUNDS: usize = 3;", to: "const ROUNDS: usize = 0;" },
+      { file: "src/estimator/contrasted.rs", from: "const ROUNDS: usize = 3;", to: "const ROUNDS: usize = 0;" },
     ],
   },
   {
@@ -115,7 +115,7 @@ export const PARTS = [
   {
     name: "cubics",
     what: "normals of third order with their errors (central differences, all with equal weight)",
-    changes: [{ file: "src/estimator/finder/photometric.rs", from: "if !depth.normals_given {", to: "if false {" }],
+    changes: [{ file: "src/estimator/photometric.rs", from: "if !depth.normals_given {", to: "if false {" }],
   },
   {
     name: "confirmed",

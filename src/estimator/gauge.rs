@@ -1,23 +1,18 @@
-//! Units, initial poses and gauges: fixes what the data cannot determine (`docs/method/frames.md`).
+//! Units and gauges: fixes what the data cannot determine (`docs/method/frames.md`).
 //!
 //! - Scale: for a metric cloud and a pixel image, s is near s0 = focal length / median Z. For pixels and pixels, and
 //!   for any image with known intrinsics, s0 = 1.
 //! - An orthographic image does not depend on t_z: the median depth difference of the correspondences is set to zero.
 //! - A pinhole image does not determine the size of its surface: s is held and the surface is scaled instead.
 
-use nalgebra::{Matrix3, Vector3};
-
 use super::pair::ViewPair;
 use super::solution::Solution;
 use crate::numeric::quantile;
-use crate::options::Start;
 use crate::pose::{Correspondences, Similarity};
 use crate::view::{Camera, ColourView, DepthView, Points};
 
-/// Two orthographic masks that overlap less than this (intersection over union) are centred on each other first.
-const LEAST_MASK_OVERLAP: f64 = 0.5;
 /// Factor of the apparent size, or its inverse, beyond which a pose is not plausible beside a given one. The search covers
-/// 0.7 to 1.4, and a single registration may change the size by `finder::COLLAPSE`.
+/// 0.7 to 1.4, and a single registration may change the size by `photometric::COLLAPSE`.
 const LARGEST_SIZE_RATIO: f64 = 2.0;
 
 /// s0: length of one unit of the depth view in the colour view.
@@ -59,81 +54,6 @@ pub fn keeps_size(pair: &ViewPair, pose: &Similarity, other: &Similarity) -> boo
 pub fn pixel_length(image: &ColourView, solution: &Solution) -> f64 {
     let distance = || solution.pose.apply(solution.depth.points.centroid()).z;
     image.camera.focal_length().map_or(1.0, |focal_length| distance() / focal_length)
-}
-
-/// The pose of iteration zero.
-pub fn first_pose(pair: &ViewPair) -> Similarity {
-    let start = pair.options.start;
-    let (rotation, scale, translation) = match start {
-        Start::Search | Start::Identity => (Matrix3::identity(), None, None),
-        Start::Pose { rotation, scale, translation } => (rotation, scale, translation),
-    };
-    let scale = held_scale(pair).or(scale).unwrap_or_else(|| unit_scale(pair));
-    let mut pose = Similarity { scale, rotation, translation: translation.unwrap_or_else(Vector3::zeros) };
-    if translation.is_none() && !coincides(&pair.image, &pair.depth, start) {
-        pose.translation = centring(&pair.image, &pair.depth, &pose);
-    }
-    pose
-}
-
-/// The pose of a rotation that puts the centre of the depth points on the centre of the image's object.
-pub fn centred(pair: &ViewPair, rotation: Matrix3<f64>) -> Similarity {
-    let scale = held_scale(pair).unwrap_or_else(|| unit_scale(pair));
-    let mut pose = Similarity { scale, rotation, translation: Vector3::zeros() };
-    pose.translation = centring(&pair.image, &pair.depth, &pose);
-    pose
-}
-
-/// Whether the views share a frame if the pose is the identity.
-pub fn shares_frame(pair: &ViewPair) -> bool {
-    coincides(&pair.image, &pair.depth, Start::Identity)
-}
-
-/// Whether both views share their frame initially, so that a translation of zero is the best initial one. An initial
-/// rotation rotates a view about the frame's origin, so its centre must then be moved back.
-fn coincides(image: &ColourView, depth: &DepthView, start: Start) -> bool {
-    start == Start::Identity
-        && match (image.camera, depth.camera) {
-            (Camera::Pinhole(_), Camera::Pinhole(_)) => true,
-            (Camera::Orthographic, Camera::Orthographic) => mask_overlap(image, depth) >= LEAST_MASK_OVERLAP,
-            _ => false,
-        }
-}
-
-/// Intersection over union of both masks if the views share their frame.
-fn mask_overlap(image: &ColourView, depth: &DepthView) -> f64 {
-    let (mut both, mut any) = (0_usize, image.mask.iter().filter(|&&inside| inside).count());
-    for index in (0..depth.size.len()).filter(|&index| depth.mask[index]) {
-        let (column, row) = depth.size.position(index);
-        let [x, y] = depth.camera.ray(depth.size, [column as f64, row as f64]);
-        let pixel = image.camera.project(image.size, [x, y, 0.0]);
-        let inside = pixel.and_then(|[column, row]| image.size.nearest(column as f32, row as f32));
-        match inside.filter(|&pixel| image.mask[pixel]) {
-            Some(_) => both += 1,
-            None => any += 1,
-        }
-    }
-    both as f64 / any.max(1) as f64
-}
-
-/// The translation that puts the centre of the depth points on the centre of the image's mask.
-fn centring(image: &ColourView, depth: &DepthView, pose: &Similarity) -> Vector3<f64> {
-    let rotated = pose.scale * (pose.rotation * depth.points.centroid());
-    let (mut column, mut row, mut count) = (0.0, 0.0, 0.0);
-    for index in (0..image.size.len()).filter(|&index| image.mask[index]) {
-        let (c, r) = image.size.position(index);
-        column += c as f64;
-        row += r as f64;
-        count += 1.0;
-    }
-    let pixel = [column / count, row / count];
-    let distance = match (image.camera.focal_length(), depth.camera) {
-        (None, _) => 0.0,
-        (Some(_), Camera::Pinhole(_)) => rotated.z,
-        // A cloud in pixels is placed where its silhouette is as large as the image's.
-        (Some(focal_length), Camera::Orthographic) => focal_length * pose.scale * (depth.valid() as f64 / count).sqrt(),
-    };
-    Vector3::from(image.camera.point(image.size, pixel, distance)) - rotated
 }
 
 fn median_depth(depth: &DepthView) -> f64 {

@@ -10,14 +10,19 @@
 //! never takes back a pose that it moved.
 //!
 //! Each stage owns its memory, and its signature shows what it reads and writes ([`stages`]). This file holds the order
-//! in which they run, [`ending`] the end of an iteration and of the run, [`reporting`] what it reports.
+//! in which they run, [`ending`] the end of an iteration and of the run, [`reporting`] what it reports. The [`decision`]
+//! of the finder names the method that the pose rests on; the stages, the verdict and the report follow it.
 
+mod checks;
+mod contrasted;
+mod decision;
 mod ending;
 mod finder;
 mod gauge;
 mod memory;
 mod objective;
 mod pair;
+mod photometric;
 mod reporting;
 mod run;
 mod searching;
@@ -36,6 +41,7 @@ use crate::shape::Scratch;
 use crate::view::{ColourImage, DepthMap};
 use ending::settling::{self, Settling};
 use finder::Opening;
+use finder::initial_pose::first_pose;
 pub use finder::task::{Finding, Task};
 use pair::ViewPair;
 use reporting::measurement::PixelResiduals;
@@ -108,7 +114,7 @@ impl Estimator {
     }
 
     fn of(pair: ViewPair) -> Result<Self> {
-        let pose = gauge::first_pose(&pair);
+        let pose = first_pose(&pair);
         let light = pair.known_light().copied().unwrap_or_else(|| pair.prior.mean());
         // The parts that need much more memory during construction than afterwards come first.
         let registration = RegistrationStage::new(&pair, Opening::is_called_for(&pair));
@@ -252,7 +258,7 @@ impl Estimator {
         if let Some(light) = fitted {
             self.solution.light.light = light;
         }
-        if let Some(found) = self.stages.registration.found_by_colours() {
+        if let Some(found) = self.stages.registration.found_photometrically() {
             (self.solution.light.light, self.solution.light.exposure) = (found.light, found.exposure);
         }
         if let Some(found) = self.stages.albedo.found() {
@@ -283,7 +289,7 @@ impl Estimator {
     /// Normals of the image (Eq. 6 to 9), and the exposure of a known light unless the registration found it.
     fn find_normals(&mut self) {
         let exposure_is_free =
-            self.pair.known_light().is_some() && self.stages.registration.found_by_colours().is_none();
+            self.pair.known_light().is_some() && self.stages.registration.found_photometrically().is_none();
         let Parts { inputs, shape, solution: Solution { light, image, .. }, .. } = self.parts();
         shape.find_normals(inputs, exposure_is_free, light, &mut image.normals);
     }

@@ -57,12 +57,17 @@ impl ViewPair {
 
     /// The residuals of a registration.
     pub fn residuals(&self, found: &PhotometricReport) -> Residuals {
-        Residuals { covariance: Some(found.spatial_covariance), ..self.residuals_of_noise(found.noise) }
+        Residuals { spatial_covariance: Some(found.spatial_covariance), ..self.residuals_of_noise(found.noise) }
     }
 
     /// The residuals if only their noise was measured.
     pub fn residuals_of_noise(&self, noise: f64) -> Residuals {
-        Residuals { noise, covariance: None, image_noise: self.image.log_noise(), spread: self.image.log_spread() }
+        Residuals {
+            noise,
+            spatial_covariance: None,
+            image_noise: self.image.log_noise(),
+            spread: self.image.log_spread(),
+        }
     }
 
     /// log S of R, G, B.

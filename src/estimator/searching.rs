@@ -4,8 +4,10 @@
 use nalgebra::Matrix3;
 
 use super::Estimator;
-use super::ending::checks;
-use super::finder::{Advance, Decision, Finder, Opening};
+use super::checks;
+use super::decision::Decision;
+use super::finder::{Advance, Finder, Opening};
+use super::gauge;
 use super::run::Run;
 use crate::error::Result;
 use crate::pose::{Angles, ImageGrid};
@@ -27,7 +29,7 @@ impl Estimator {
             }
             Some(prepared) => {
                 let (grid, opening) = *prepared;
-                let memory = self.stages.registration.memory();
+                let memory = &mut self.stages.registration.photometric;
                 Run::Searching(Box::new(Finder::everywhere(&self.pair, memory, opening, grid)?))
             }
         };
@@ -44,7 +46,7 @@ impl Estimator {
     /// Runs a slice of the finder.
     pub(super) fn search(&mut self) -> std::result::Result<(), Reason> {
         let Run::Searching(finder) = &mut self.run else { return Ok(()) };
-        match finder.advance(&self.pair, self.stages.registration.memory())? {
+        match finder.advance(&self.pair, &mut self.stages.registration.photometric)? {
             Advance::Ongoing(share, activity) => {
                 self.report_search(share, activity);
                 Ok(())
@@ -61,6 +63,10 @@ impl Estimator {
                 self.run = Run::Iterating(Stage::Light);
                 self.report.pose = self.solution.pose;
                 self.start_from(decision)
+            }
+            Advance::Nothing => {
+                self.report.pose = self.solution.pose;
+                Err(Reason::NoPose { scale_is_held: gauge::held_scale(&self.pair).is_some() })
             }
         }
     }

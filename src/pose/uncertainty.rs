@@ -139,9 +139,10 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// Sigma of the rotation about its least certain axis, degrees.
+    /// Sigma of the rotation about its least certain axis, degrees; NaN if one is not a number.
     pub(crate) fn largest_rotation(&self) -> f64 {
-        self.rotation_degrees.into_iter().fold(0.0, f64::max)
+        let larger = |a: f64, b: f64| if a >= b || a.is_nan() { a } else { b };
+        self.rotation_degrees.into_iter().fold(0.0, larger)
     }
 
     /// Adds the mean square distance of `ends` from `pose`. They are the poses at which registrations from several initial

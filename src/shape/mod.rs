@@ -13,10 +13,8 @@
 //! | equation | file |
 //! |---|---|
 //! | Eq. 6 to 9 (17 and 18 for the depth view): terms and derivatives of one pixel | `pixels/shading` |
-//! | the objective of one pixel over the hemisphere, for display | `pixels/landscape` |
 //! | the exposure of a known light | `pixels/exposure` |
 //! | Eq. 4, 10: gradients and slopes of normals | `integration/normals_to_gradients` |
-//! | a surface from given normals alone | `integration/surface_of_normals` |
 //! | Eq. 11: a surface from gradients, with robust weights | `integration/gradients_to_heights` |
 //! | the weighted Poisson equation and its preconditioner | `integration/poisson` |
 //! | brightness of a cell as a function of its slopes | `heights/cell_terms`, its rays in `heights/ray_frames` |
@@ -25,7 +23,6 @@
 //! | starts and the choice among local optima | `heights/starts`, coarse to fine in `heights/image_surface` |
 //! | normals and surface of the colour view, one after the other | `image_shape` |
 //! | Eq. 19, anchors and their weights | `refinement` |
-//! | characteristic strips of a picture with one lamp, for lessons | `strips` |
 //!
 //! Data flows one way: `pixels` and `integration` are independent, `heights` takes edges and anchors from
 //! `integration`, `image_shape` and `refinement` use all three. Rasters that live for one stage only belong to a
@@ -36,17 +33,14 @@ mod image_shape;
 mod integration;
 mod pixels;
 mod refinement;
-mod strips;
 
 pub use heights::{HeightDomain, STARTS, Scratch};
 pub use image_shape::{ImageShapeProblem, ImageShapeSolver};
+pub(crate) use integration::find_slopes;
 pub use integration::{
     AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, IntegrationTermination, Integrator, Robustness,
-    gradients, surface_of_normals,
+    gradients,
 };
-pub use pixels::{
-    Minimum, PixelLandscape, ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, exposure_step,
-    first_exposure,
-};
+pub(crate) use pixels::{LARGEST_N_Z, LinearisedPixels, MOST_DESCENT_STEPS, Pixels, normalise};
+pub use pixels::{ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, exposure_step, first_exposure};
 pub use refinement::{RefinementProblem, RefinementTerms, Refiner};
-pub use strips::{Form, ShadedImage, characteristic_strips};

@@ -6,10 +6,12 @@ use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use super::error::Thrown;
-use crate::light::{BasRelief, Lamp, Light, second_order};
-use crate::shape::{
-    Form, Minimum, PixelLandscape, ShadedImage, ShadingWeights, characteristic_strips, surface_of_normals,
+use crate::lessons::{
+    BasRelief, Form, Lamp, Minimum, PixelLandscape, ShadedImage, characteristic_strips, second_order,
+    surface_of_normals,
 };
+use crate::light::Light;
+use crate::shape::ShadingWeights;
 use crate::view::{Normals, Size};
 
 type Result<T> = std::result::Result<T, Thrown>;

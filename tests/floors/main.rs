@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use house::House;
 
 /// The layers from the bottom up; a layer uses only layers before it.
-const ROOMS: [&str; 19] = [
+const ROOMS: [&str; 20] = [
     "text",
     "serial",
     "error",
@@ -20,6 +20,7 @@ const ROOMS: [&str; 19] = [
     "view",
     "light",
     "shape",
+    "lessons",
     "pose",
     "calibration",
     "options",

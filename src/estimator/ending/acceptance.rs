@@ -1,13 +1,14 @@
 //! The end of an iteration: the solution is accepted or rejected, shapes settle, and the loop continues or ends.
 
-use super::checks;
-use super::evidence::{Answer, ContrastEvidence, Evidence, PhotometricEvidence, SilhouetteEvidence};
+use super::evidence::Evidence;
 use super::settling;
 use super::verdict::{self, Verdict};
 use crate::estimator::Estimator;
+use crate::estimator::checks;
+use crate::estimator::decision::Decision;
 use crate::estimator::objective::{self, Trial};
 use crate::estimator::run::{History, Run};
-use crate::estimator::stages::{Decided, Stages};
+use crate::estimator::stages::Stages;
 use crate::options::Registration;
 use crate::reason::Reason;
 use crate::report::{Objective, Status};
@@ -114,7 +115,7 @@ impl Estimator {
         self.report.drop_near_rivals(self.pair.options.tolerance);
         let Self { pair, report, history, .. } = &*self;
         let nearest = report.rivals.iter().map(|rival| rival.degrees_to(&report.pose)).fold(f64::INFINITY, f64::min);
-        let ended = verdict::verdict(&Evidence {
+        let evidence = Evidence {
             iteration: report.iteration,
             max_iterations: pair.options.max_iterations,
             tolerance: pair.options.tolerance,
@@ -128,28 +129,16 @@ impl Estimator {
             rejections: history.rejections,
             unmoved: history.unmoved,
             is_whole_step: history.step_fraction >= 1.0 && history.improved,
-            answer: self.answer(),
+            log_spread: pair.image.log_spread(),
             hollow: history.hollow.clone(),
             missing_mask: checks::missing_mask(pair),
             rivals: report.rivals.len() as u32,
             nearest_rival: nearest,
-        });
+        };
+        let ended = verdict::verdict(&evidence, self.stages.registration.method());
         let checked = ended.map(|ended| self.check_unit(ended));
         if let Some((status, reason)) = checked {
             self.end(status, reason);
-        }
-    }
-
-    /// What the method that found the pose reports about it.
-    fn answer(&self) -> Answer {
-        let registration = &self.stages.registration;
-        match registration.decided() {
-            Some(Decided::Initial(staying)) => Answer::Initial(*staying),
-            Some(Decided::Silhouettes(found)) => Answer::Silhouettes(SilhouetteEvidence::of(found)),
-            Some(Decided::Contrast(found)) => Answer::Contrast(ContrastEvidence::of(&found.report)),
-            Some(Decided::Photometric) | None => registration.found_by_colours().map_or(Answer::Surfaces, |found| {
-                Answer::Photometric(PhotometricEvidence::of(found, self.pair.image.log_spread()))
-            }),
         }
     }
 
@@ -161,8 +150,10 @@ impl Estimator {
         if !(is_joint && (ended.0 == Status::Converged || has_rivals)) {
             return ended;
         }
-        let colours = self.stages.registration.memory().as_mut();
-        let reason = colours.and_then(|colours| checks::other_unit(colours, &self.pair, &self.solution.pose));
+        let registration = &mut self.stages.registration;
+        let found = registration.decision.as_ref().and_then(Decision::photometric);
+        let check = |memory| checks::other_unit(memory, &self.pair, &self.solution.pose, found);
+        let reason = registration.photometric.as_mut().and_then(check);
         reason.map_or(ended, verdict::capped)
     }
 

@@ -1,11 +1,7 @@
-//! Evidence for the verdict: the state of the loop after an iteration, and what each registration reports about its
-//! answer.
+//! Evidence for the verdict: the state of the loop after an iteration.
 
 use crate::options::{Registration, Shading};
-use crate::pose::{ContrastReport, Direction, PhotometricReport, SilhouetteReport};
 use crate::reason::Reason;
-
-use crate::estimator::finder::Staying;
 
 /// The state of the loop at the end of an iteration.
 #[derive(Clone, Debug)]
@@ -32,89 +28,12 @@ pub struct Evidence {
     pub unmoved: u32,
     /// Whether the registration's whole step was taken, and to a better pose.
     pub is_whole_step: bool,
-    pub answer: Answer,
+    /// Standard deviation of log S over the object.
+    pub log_spread: f64,
     /// Reasons of the input checks to distrust an answer: a hollow depth map, a missing mask.
     pub hollow: Option<Reason>,
     pub missing_mask: Option<Reason>,
     /// Number of rivals, and the degrees to the nearest.
     pub rivals: u32,
     pub nearest_rival: f64,
-}
-
-/// The method that found the answer, and what it reports about it.
-#[derive(Clone, Copy, Debug)]
-pub enum Answer {
-    Photometric(PhotometricEvidence),
-    Contrast(ContrastEvidence),
-    Silhouettes(SilhouetteEvidence),
-    /// The initial pose was kept.
-    Initial(Staying),
-    /// The surfaces were matched, or the pose is fixed.
-    Surfaces,
-}
-
-/// What photometric registration reports about its answer.
-#[derive(Clone, Copy, Debug)]
-pub struct PhotometricEvidence {
-    /// Sigma of the rotation about the least certain axis, degrees, and the weakest direction.
-    pub sigma: f64,
-    pub weakest: Direction,
-    /// Share of the log image's spread that is left unexplained.
-    pub unexplained: f64,
-    /// Share of the points within the robust scale.
-    pub inliers: f64,
-}
-
-/// What silhouettes report about their answer.
-#[derive(Clone, Copy, Debug)]
-pub struct SilhouetteEvidence {
-    /// Sigma of the rotation about the least certain axis, degrees, and that axis.
-    pub sigma: f64,
-    pub weakest: Direction,
-    /// Whether that rotation is practically unobserved.
-    pub is_unseen: bool,
-}
-
-/// What local contrast reports about its answer.
-#[derive(Clone, Copy, Debug)]
-pub struct ContrastEvidence {
-    /// Sigma of the rotation about the least certain axis, degrees, and the weakest direction.
-    pub sigma: f64,
-    pub weakest: Direction,
-    /// Objective of local contrast and silhouette: 0 if both fit perfectly, about 1 if shading explains nothing.
-    pub objective: f64,
-}
-
-impl ContrastEvidence {
-    /// Evidence from a registration by local contrast.
-    pub fn of(found: &ContrastReport) -> Self {
-        Self {
-            sigma: found.uncertainty.largest_rotation(),
-            weakest: found.uncertainty.weakest,
-            objective: found.objective,
-        }
-    }
-}
-
-impl PhotometricEvidence {
-    /// Evidence from a photometric registration, given the spread of the log image.
-    pub fn of(found: &PhotometricReport, log_spread: f64) -> Self {
-        Self {
-            sigma: found.uncertainty.largest_rotation(),
-            weakest: found.uncertainty.weakest,
-            unexplained: found.noise / log_spread,
-            inliers: found.inliers,
-        }
-    }
-}
-
-impl SilhouetteEvidence {
-    /// Evidence from a registration by silhouettes.
-    pub fn of(found: &SilhouetteReport) -> Self {
-        Self {
-            sigma: found.uncertainty.largest_rotation(),
-            weakest: found.uncertainty.weakest,
-            is_unseen: found.unseen,
-        }
-    }
 }

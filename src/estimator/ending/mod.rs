@@ -7,10 +7,8 @@
 //! | `settling` | which shapes have settled |
 //! | `evidence` | what the verdict is based on |
 //! | `verdict` | the status and its reason, a pure function of the evidence |
-//! | `checks` | checks of the input, which cap the status |
 
 mod acceptance;
-pub mod checks;
 mod evidence;
 pub mod settling;
 mod verdict;

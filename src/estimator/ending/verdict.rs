@@ -6,12 +6,12 @@
 
 use crate::diagnosis::{LARGEST_CONTRAST_OBJECTIVE, LARGEST_UNEXPLAINED};
 use crate::options::{Registration, Shading};
-use crate::pose::Direction;
+use crate::pose::{ContrastReport, PhotometricReport, SilhouetteReport, Uncertainty};
 use crate::reason::Reason;
 use crate::report::Status;
 
-use super::evidence::{Answer, ContrastEvidence, Evidence, PhotometricEvidence, SilhouetteEvidence};
-use crate::estimator::finder::Staying;
+use super::evidence::Evidence;
+use crate::estimator::decision::{Method, Staying};
 
 /// Successive rejected iterations after which no better pose is expected.
 const MOST_REJECTIONS: u32 = 6;
@@ -39,8 +39,9 @@ const FEWEST_INLIERS: f64 = 0.4;
 /// A status with its reason.
 pub type Verdict = (Status, Option<Reason>);
 
-/// The verdict after an iteration; `None` if the loop continues.
-pub fn verdict(evidence: &Evidence) -> Option<Verdict> {
+/// The verdict after an iteration; `None` if the loop continues. Without a method, surfaces determine the pose, or it is
+/// fixed.
+pub fn verdict(evidence: &Evidence, method: Option<&Method>) -> Option<Verdict> {
     let Evidence { registration, is_rejected, rejections, iteration, max_iterations, .. } = *evidence;
     if evidence.correspondences < FEWEST_CORRESPONDENCES || evidence.overlap < LEAST_MATCHED_SHARE {
         return Some((Status::Lost, Some(Reason::LittleOverlap { percent: 100.0 * evidence.overlap })));
@@ -59,7 +60,7 @@ pub fn verdict(evidence: &Evidence) -> Option<Verdict> {
         return None;
     };
     let of_input = || evidence.missing_mask.clone().map(capped);
-    Some(reason_for_distrust(evidence).or_else(of_input).unwrap_or(end))
+    Some(reason_for_distrust(evidence, method).or_else(of_input).unwrap_or(end))
 }
 
 /// The verdict if a check of the input distrusts an answer that looks good.
@@ -86,14 +87,14 @@ fn has_settled(evidence: &Evidence) -> bool {
 }
 
 /// The reason why the answer is "lost" or "ambiguous" although the loop has ended, if there is one.
-fn reason_for_distrust(evidence: &Evidence) -> Option<Verdict> {
-    let (lost, certainty) = match evidence.answer {
-        Answer::Initial(Staying::Explains) => return Some(capped(Reason::InitialPoseKept)),
-        Answer::Initial(Staying::ExplainsNothing) => return Some((Status::Lost, Some(Reason::InitialPoseKept))),
-        Answer::Silhouettes(found) => return reason_to_doubt_silhouettes(&found, evidence.tolerance).map(capped),
-        Answer::Contrast(found) => (reason_to_doubt_contrast(&found), Some((found.sigma, found.weakest))),
-        Answer::Photometric(found) => (reason_to_be_lost(&found), Some((found.sigma, found.weakest))),
-        Answer::Surfaces => (None, None),
+fn reason_for_distrust(evidence: &Evidence, method: Option<&Method>) -> Option<Verdict> {
+    let (lost, certainty) = match method {
+        Some(Method::Initial(Staying::Explains)) => return Some(capped(Reason::InitialPoseKept)),
+        Some(Method::Initial(Staying::ExplainsNothing)) => return Some((Status::Lost, Some(Reason::InitialPoseKept))),
+        Some(Method::Silhouettes(found)) => return reason_to_doubt_silhouettes(found, evidence.tolerance).map(capped),
+        Some(Method::Contrast(found)) => (reason_to_doubt_contrast(&found.report), Some(&found.report.uncertainty)),
+        Some(Method::Photometric(found)) => (reason_to_be_lost(found, evidence.log_spread), Some(&found.uncertainty)),
+        None => (None, None),
     };
     if lost.is_some() {
         return Some((Status::Lost, lost));
@@ -101,54 +102,54 @@ fn reason_for_distrust(evidence: &Evidence) -> Option<Verdict> {
     if let Some(hollow) = &evidence.hollow {
         return Some(capped(hollow.clone()));
     }
-    match (evidence.rivals, certainty) {
-        (0, Some((sigma, weakest))) if sigma > evidence.tolerance => {
-            Some(capped(Reason::RotationUncertain { sigma_degrees: sigma, weakest }))
-        }
-        (0, _) => None,
-        (count, _) => Some(capped(Reason::Rivals { count, nearest_degrees: evidence.nearest_rival })),
+    match evidence.rivals {
+        0 => certainty.and_then(|uncertainty| too_uncertain(uncertainty, evidence.tolerance)).map(capped),
+        count => Some(capped(Reason::Rivals { count, nearest_degrees: evidence.nearest_rival })),
     }
 }
 
-fn reason_to_doubt_silhouettes(found: &SilhouetteEvidence, tolerance: f64) -> Option<Reason> {
-    let &SilhouetteEvidence { sigma, weakest, is_unseen } = found;
-    if is_unseen {
+fn reason_to_doubt_silhouettes(found: &SilhouetteReport, tolerance: f64) -> Option<Reason> {
+    let (sigma, weakest) = (found.uncertainty.largest_rotation(), found.uncertainty.weakest);
+    if found.unseen {
         return Some(Reason::SilhouetteBlind { weakest });
     }
     (sigma.is_nan() || sigma > tolerance).then_some(Reason::AlbedoVaries { sigma_degrees: sigma, weakest })
 }
 
-fn reason_to_doubt_contrast(&ContrastEvidence { sigma, weakest, objective }: &ContrastEvidence) -> Option<Reason> {
-    let is_unexplained = objective.is_nan() || objective > LARGEST_CONTRAST_OBJECTIVE;
-    too_uncertain(sigma, weakest)
+fn reason_to_doubt_contrast(ContrastReport { objective, uncertainty, .. }: &ContrastReport) -> Option<Reason> {
+    let is_unexplained = objective.is_nan() || *objective > LARGEST_CONTRAST_OBJECTIVE;
+    too_uncertain(uncertainty, LOST_SIGMA)
         .or_else(|| is_unexplained.then_some(Reason::ContrastUnexplained { percent: 100.0 * objective }))
 }
 
-fn too_uncertain(sigma: f64, weakest: Direction) -> Option<Reason> {
-    (sigma.is_nan() || sigma > LOST_SIGMA).then_some(Reason::RotationUncertain { sigma_degrees: sigma, weakest })
+fn too_uncertain(uncertainty: &Uncertainty, most: f64) -> Option<Reason> {
+    let (sigma, weakest) = (uncertainty.largest_rotation(), uncertainty.weakest);
+    (sigma.is_nan() || sigma > most).then_some(Reason::RotationUncertain { sigma_degrees: sigma, weakest })
 }
 
-fn reason_to_be_lost(
-    &PhotometricEvidence { sigma, weakest, unexplained, inliers }: &PhotometricEvidence,
-) -> Option<Reason> {
+fn reason_to_be_lost(found: &PhotometricReport, log_spread: f64) -> Option<Reason> {
+    let (sigma, weakest) = (found.uncertainty.largest_rotation(), found.uncertainty.weakest);
     if sigma.is_nan() || sigma > UNOBSERVABLE {
         return Some(Reason::NotObservable { weakest });
     }
-    if let Some(reason) = too_uncertain(sigma, weakest) {
+    if let Some(reason) = too_uncertain(&found.uncertainty, LOST_SIGMA) {
         return Some(reason);
     }
+    let unexplained = found.noise / log_spread;
     if unexplained.is_nan() || unexplained > LARGEST_UNEXPLAINED {
         return Some(Reason::Unexplained { percent: 100.0 * unexplained });
     }
-    (inliers < FEWEST_INLIERS).then_some(Reason::FewInliers { percent: 100.0 * inliers })
+    (found.inliers < FEWEST_INLIERS).then_some(Reason::FewInliers { percent: 100.0 * found.inliers })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pose::{Axis, Unknown};
+    use crate::estimator::contrasted::Contrasted;
+    use crate::light::Light;
+    use crate::pose::{Axis, Direction, PhotometricTermination, Similarity, Unknown};
 
-    /// A photometric run without any problem that has just settled in its fifth iteration.
+    /// A run without any problem that has just settled in its fifth iteration.
     const SETTLED: Evidence = Evidence {
         iteration: 5,
         max_iterations: 60,
@@ -163,7 +164,7 @@ mod tests {
         rejections: 0,
         unmoved: 1,
         is_whole_step: true,
-        answer: Answer::Photometric(SURE),
+        log_spread: 1.0,
         hollow: None,
         missing_mask: None,
         rivals: 0,
@@ -171,16 +172,53 @@ mod tests {
     };
     const ABOUT_X: Direction = Direction { first: Some(Unknown::Rotation(Axis::X)), second: None };
     const ABOUT_Y: Direction = Direction { first: Some(Unknown::Rotation(Axis::Y)), second: None };
-    const SURE: PhotometricEvidence =
-        PhotometricEvidence { sigma: 0.1, weakest: ABOUT_X, unexplained: 0.05, inliers: 0.9 };
-    const CONTRASTED: ContrastEvidence = ContrastEvidence { sigma: 0.5, weakest: ABOUT_X, objective: 0.3 };
-    const SEEN: SilhouetteEvidence = SilhouetteEvidence { sigma: 0.8, weakest: ABOUT_Y, is_unseen: false };
-    const ICP: Evidence = Evidence { registration: Registration::Icp, answer: Answer::Surfaces, ..SETTLED };
-    const FIXED: Evidence = Evidence { registration: Registration::Fixed, answer: Answer::Surfaces, ..SETTLED };
+    const ICP: Evidence = Evidence { registration: Registration::Icp, ..SETTLED };
+    const FIXED: Evidence = Evidence { registration: Registration::Fixed, ..SETTLED };
     const MOVING: Evidence = Evidence { unmoved: 0, ..SETTLED };
 
-    /// A case: its name, the evidence, the expected status and reason.
-    type Row = (&'static str, Evidence, Option<Status>, Option<Reason>);
+    /// A case: its name, the evidence or the method of a settled run, the expected status and reason.
+    type Row<Case = Evidence> = (&'static str, Case, Option<Status>, Option<Reason>);
+
+    fn uncertainty(sigma: f64, weakest: Direction) -> Uncertainty {
+        Uncertainty { rotation_degrees: [0.0, sigma, 0.1], translation: [None; 3], scale: None, weakest }
+    }
+
+    /// Photometric registration that leaves `noise` of the image's spread, whose `inliers` lie within the robust scale.
+    fn photometric(sigma: f64, noise: f64, inliers: f64) -> Method {
+        Method::Photometric(Box::new(PhotometricReport {
+            pose: Similarity::identity(),
+            light: Light([[0.0; 9]; 3]),
+            exposure: 0.0,
+            objective: 0.0,
+            noise,
+            spatial_covariance: 0.0,
+            visible: 1000,
+            sampled: false,
+            inliers,
+            iterations: 9,
+            termination: PhotometricTermination::Settled,
+            information: Default::default(),
+            covariance: Default::default(),
+            uncertainty: uncertainty(sigma, ABOUT_X),
+        }))
+    }
+
+    fn contrast(sigma: f64, objective: f64) -> Method {
+        let (pose, uncertainty) = (Similarity::identity(), uncertainty(sigma, ABOUT_X));
+        Method::Contrast(Box::new(Contrasted::new(ContrastReport { pose, objective, uncertainty })))
+    }
+
+    fn silhouettes(sigma: f64, unseen: bool) -> Method {
+        let (pose, uncertainty) = (Similarity::identity(), uncertainty(sigma, ABOUT_Y));
+        Method::Silhouettes(Box::new(SilhouetteReport {
+            pose,
+            noise: 1.0,
+            uncertainty,
+            unseen,
+            cost: 0.1,
+            discontinuities: 99,
+        }))
+    }
 
     const fn turned(sigma_degrees: f64) -> Option<Reason> {
         Some(Reason::RotationUncertain { sigma_degrees, weakest: ABOUT_X })
@@ -224,10 +262,8 @@ mod tests {
         ]
     }
 
-    /// Cases of whether the end of the loop is reliable.
+    /// Cases of whether the end of the loop is reliable, whatever the method.
     fn reliability() -> Vec<Row> {
-        let photometric = |found: PhotometricEvidence| Evidence { answer: Answer::Photometric(found), ..SETTLED };
-        let contrast = |found: ContrastEvidence| Evidence { answer: Answer::Contrast(found), ..SETTLED };
         let (lost, ambiguous) = (Some(Status::Lost), Some(Status::Ambiguous));
         vec![
             (
@@ -242,57 +278,6 @@ mod tests {
                 lost,
                 Some(Reason::LittleOverlap { percent: 80.0 }),
             ),
-            (
-                "a turn that nothing shows",
-                photometric(PhotometricEvidence { sigma: 31.0, ..SURE }),
-                lost,
-                Some(Reason::NotObservable { weakest: ABOUT_X }),
-            ),
-            (
-                "a sigma that is no number",
-                photometric(PhotometricEvidence { sigma: f64::NAN, ..SURE }),
-                lost,
-                Some(Reason::NotObservable { weakest: ABOUT_X }),
-            ),
-            ("a large sigma", photometric(PhotometricEvidence { sigma: 6.0, ..SURE }), lost, turned(6.0)),
-            (
-                "albedo",
-                photometric(PhotometricEvidence { unexplained: 0.4, ..SURE }),
-                lost,
-                Some(Reason::Unexplained { percent: 40.0 }),
-            ),
-            (
-                "colours without spread",
-                photometric(PhotometricEvidence { unexplained: f64::NAN, ..SURE }),
-                lost,
-                Some(Reason::Unexplained { percent: f64::NAN }),
-            ),
-            (
-                "outliers",
-                photometric(PhotometricEvidence { inliers: 0.3, ..SURE }),
-                lost,
-                Some(Reason::FewInliers { percent: 30.0 }),
-            ),
-            ("a fair sigma", photometric(PhotometricEvidence { sigma: 1.6, ..SURE }), ambiguous, turned(1.6)),
-            (
-                "local contrast that shading does not explain",
-                contrast(ContrastEvidence { objective: 0.6, ..CONTRASTED }),
-                lost,
-                Some(Reason::ContrastUnexplained { percent: 60.0 }),
-            ),
-            (
-                "local contrast with a large sigma",
-                contrast(ContrastEvidence { sigma: 6.0, ..CONTRASTED }),
-                lost,
-                turned(6.0),
-            ),
-            (
-                "local contrast with a fair sigma",
-                contrast(ContrastEvidence { sigma: 1.6, ..CONTRASTED }),
-                ambiguous,
-                turned(1.6),
-            ),
-            ("local contrast", contrast(CONTRASTED), Some(Status::Converged), None),
             (
                 "a hollow depth map",
                 Evidence { hollow: Some(Reason::Hollow), ..SETTLED },
@@ -344,54 +329,81 @@ mod tests {
         ]
     }
 
-    /// Cases with initial poses, and with silhouettes where the albedo varies.
-    fn initial_poses_and_silhouettes() -> Vec<Row> {
-        let silhouettes = |found: SilhouetteEvidence| Evidence { answer: Answer::Silhouettes(found), ..SETTLED };
-        let initial = |staying: Staying| Evidence { answer: Answer::Initial(staying), ..SETTLED };
+    /// Cases of what a method reports about the pose of a settled run.
+    fn methods() -> Vec<Row<Method>> {
         let (lost, ambiguous) = (Some(Status::Lost), Some(Status::Ambiguous));
+        let varies = |sigma_degrees| Some(Reason::AlbedoVaries { sigma_degrees, weakest: ABOUT_Y });
         vec![
             (
+                "a turn that nothing shows",
+                photometric(31.0, 0.05, 0.9),
+                lost,
+                Some(Reason::NotObservable { weakest: ABOUT_X }),
+            ),
+            (
+                "a sigma that is no number",
+                photometric(f64::NAN, 0.05, 0.9),
+                lost,
+                Some(Reason::NotObservable { weakest: ABOUT_X }),
+            ),
+            ("a large sigma", photometric(6.0, 0.05, 0.9), lost, turned(6.0)),
+            ("albedo", photometric(0.1, 0.4, 0.9), lost, Some(Reason::Unexplained { percent: 40.0 })),
+            (
+                "colours without spread",
+                photometric(0.1, f64::NAN, 0.9),
+                lost,
+                Some(Reason::Unexplained { percent: f64::NAN }),
+            ),
+            ("outliers", photometric(0.1, 0.05, 0.3), lost, Some(Reason::FewInliers { percent: 30.0 })),
+            ("a fair sigma", photometric(1.6, 0.05, 0.9), ambiguous, turned(1.6)),
+            (
+                "local contrast that shading does not explain",
+                contrast(0.5, 0.6),
+                lost,
+                Some(Reason::ContrastUnexplained { percent: 60.0 }),
+            ),
+            ("local contrast with a large sigma", contrast(6.0, 0.3), lost, turned(6.0)),
+            ("local contrast with a fair sigma", contrast(1.6, 0.3), ambiguous, turned(1.6)),
+            ("local contrast", contrast(0.5, 0.3), Some(Status::Converged), None),
+            (
                 "an initial pose that nothing improves",
-                initial(Staying::Explains),
+                Method::Initial(Staying::Explains),
                 ambiguous,
                 Some(Reason::InitialPoseKept),
             ),
             (
                 "an initial pose that explains nothing, as nothing else does",
-                initial(Staying::ExplainsNothing),
+                Method::Initial(Staying::ExplainsNothing),
                 lost,
                 Some(Reason::InitialPoseKept),
             ),
-            ("silhouettes that see everything", silhouettes(SEEN), Some(Status::Converged), None),
-            (
-                "silhouettes that see little",
-                silhouettes(SilhouetteEvidence { sigma: 1.9, ..SEEN }),
-                ambiguous,
-                Some(Reason::AlbedoVaries { sigma_degrees: 1.9, weakest: ABOUT_Y }),
-            ),
-            (
-                "a mug's own axis",
-                silhouettes(SilhouetteEvidence { sigma: 2.8, is_unseen: true, ..SEEN }),
-                ambiguous,
-                Some(Reason::SilhouetteBlind { weakest: ABOUT_Y }),
-            ),
-            (
-                "an initial pose that still settles",
-                Evidence { answer: Answer::Initial(Staying::Explains), ..MOVING },
-                None,
-                None,
-            ),
+            ("silhouettes that see everything", silhouettes(0.8, false), Some(Status::Converged), None),
+            ("silhouettes that see little", silhouettes(1.9, false), ambiguous, varies(1.9)),
+            ("silhouettes with a sigma that is no number", silhouettes(f64::NAN, false), ambiguous, varies(f64::NAN)),
+            ("a mug's own axis", silhouettes(2.8, true), ambiguous, Some(Reason::SilhouetteBlind { weakest: ABOUT_Y })),
         ]
+    }
+
+    /// Compared as text, by code and numbers, because NaN equals nothing.
+    #[track_caller]
+    fn expect(name: &str, found: Option<Verdict>, (status, reason): (Option<Status>, Option<Reason>)) {
+        assert_eq!(format!("{found:?}"), format!("{:?}", status.map(|status| (status, reason))), "{name}");
     }
 
     #[test]
     fn each_kind_of_evidence_has_its_verdict() {
-        for (name, evidence, status, reason) in
-            ends().into_iter().chain(reliability()).chain(initial_poses_and_silhouettes())
-        {
-            // Compared as text, by code and numbers, because NaN equals nothing.
-            let found = verdict(&evidence);
-            assert_eq!(format!("{found:?}"), format!("{:?}", status.map(|status| (status, reason))), "{name}");
+        for (name, evidence, status, reason) in ends().into_iter().chain(reliability()) {
+            for method in [None, Some(photometric(0.1, 0.05, 0.9))] {
+                expect(name, verdict(&evidence, method.as_ref()), (status, reason.clone()));
+            }
+        }
+    }
+
+    #[test]
+    fn each_method_has_its_verdict_once_the_pose_has_settled() {
+        for (name, method, status, reason) in methods() {
+            expect(name, verdict(&SETTLED, Some(&method)), (status, reason));
+            assert_eq!(verdict(&MOVING, Some(&method)), None, "{name}");
         }
     }
 }

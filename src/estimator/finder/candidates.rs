@@ -8,13 +8,13 @@ use nalgebra::Matrix3;
 use crate::error::Result;
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
+use crate::estimator::photometric::{Attempt, PhotometricRegistration};
 use crate::pose::{ImageGrid, Search, SearchProblem, Similarity, TaskResults};
 use crate::reason::Activity;
 
+use super::initial_pose::TrustRegion;
 use super::local_optima::{Choice, LocalOptima, Origin, Ranking, RegisteredCandidate};
-use super::photometric::{Attempt, PhotometricRegistration};
 use super::task::{Finding, Found, Task, Work};
-use super::trust_region::TrustRegion;
 
 /// Numbers of candidates to register.
 #[derive(Clone, Copy)]
@@ -41,12 +41,12 @@ const MORE_SHARE: f64 = 0.15;
 /// # Errors
 /// The errors of [`Search`], if the views allow no search.
 #[inline(never)]
-pub fn search(pair: &ViewPair, grid: ImageGrid, colours: &PhotometricRegistration) -> Result<Search> {
+pub fn search(pair: &ViewPair, grid: ImageGrid, photometric: &PhotometricRegistration) -> Result<Search> {
     let region = TrustRegion::of(pair);
     let problem = SearchProblem {
         image: &pair.image,
         depth: &pair.depth,
-        normals: colours.normals(),
+        normals: photometric.normals(),
         light: pair.known_light(),
         scale: gauge::held_scale(pair),
         unit_scale: region.as_ref().map_or_else(|| gauge::unit_scale(pair), |region| region.initial.scale),
@@ -148,15 +148,15 @@ impl Candidates {
     pub fn advance(
         &mut self,
         pair: &ViewPair,
-        colours: &mut PhotometricRegistration,
+        photometric: &mut PhotometricRegistration,
         is_allowed: impl Fn(&Similarity) -> bool,
     ) -> Option<Choice> {
         if self.is_searching() {
             self.search.advance();
         } else if let Some(chosen) = self.chosen.take() {
-            return self.conclude(pair, colours, chosen);
+            return self.conclude(pair, photometric, chosen);
         } else {
-            self.register(pair, colours);
+            self.register(pair, photometric);
         }
         self.count(is_allowed);
         None
@@ -178,20 +178,25 @@ impl Candidates {
     }
 
     /// Advances the registration in progress here by a step, or begins the next one.
-    fn register(&mut self, pair: &ViewPair, colours: &mut PhotometricRegistration) {
+    fn register(&mut self, pair: &ViewPair, photometric: &mut PhotometricRegistration) {
         let candidates = self.search.candidates();
         let is_wanted = |index: usize| index >= self.next && !self.optima.is_known(&candidates[index].pose);
         let begun = self.begun.filter(|&index| is_wanted(index) && self.registrations.get(index).is_none());
         let Some(index) = begun.or_else(|| self.registrations.next(is_wanted)) else { return };
-        if let Attempt::Ended(report) = self.step_candidate(pair, colours, index) {
+        if let Attempt::Ended(report) = self.step_candidate(pair, photometric, index) {
             self.registrations.put(index, report.map(RegisteredCandidate::of));
         }
     }
 
     /// One step of a registration. Drops another one in progress here.
-    fn step_candidate(&mut self, pair: &ViewPair, colours: &mut PhotometricRegistration, candidate: usize) -> Attempt {
+    fn step_candidate(
+        &mut self,
+        pair: &ViewPair,
+        photometric: &mut PhotometricRegistration,
+        candidate: usize,
+    ) -> Attempt {
         let start = self.search.candidates()[candidate].pose;
-        let progress = colours.step_candidate(pair, &start, self.begun != Some(candidate));
+        let progress = photometric.step_candidate(pair, &start, self.begun != Some(candidate));
         self.begun = matches!(progress, Attempt::Ongoing).then_some(candidate);
         progress
     }
@@ -229,11 +234,16 @@ impl Candidates {
 
     /// Chooses once the full report of the best optimum is here. A worker returns only the figures by which optima are
     /// compared.
-    fn conclude(&mut self, pair: &ViewPair, colours: &mut PhotometricRegistration, chosen: Ranking) -> Option<Choice> {
+    fn conclude(
+        &mut self,
+        pair: &ViewPair,
+        photometric: &mut PhotometricRegistration,
+        chosen: Ranking,
+    ) -> Option<Choice> {
         let Ranking { best, rivals } = chosen;
         let Some(mut best) = best else { return Some(Choice::default()) };
         if let (Origin::Candidate(candidate), None) = (best.origin, &best.registered.report) {
-            match self.step_candidate(pair, colours, candidate) {
+            match self.step_candidate(pair, photometric, candidate) {
                 Attempt::Ended(report) => best.registered.report = report,
                 Attempt::Ongoing => {
                     self.chosen = Some(Ranking { best: Some(best), rivals });

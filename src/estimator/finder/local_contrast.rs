@@ -3,11 +3,12 @@
 
 use nalgebra::{Rotation3, Vector3};
 
-use super::decision::{Decision, Method};
-use super::photometric::PhotometricRegistration;
 use crate::diagnosis::{Alternative, Diagnosis};
+use crate::estimator::contrasted::Contrasted;
+use crate::estimator::decision::{Decision, Method};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
+use crate::estimator::photometric::PhotometricRegistration;
 use crate::options::Registration;
 use crate::pose::{ContrastOutcome, ContrastReport, ContrastSearch, PhotometricReport, Similarity};
 use crate::view::ColourView;
@@ -25,19 +26,19 @@ const MOST_TURNS: i32 = 3;
 /// or shadows could explain them. With a pinhole camera, silhouettes decide instead. Under a known light, matching
 /// surfaces determines what noisy normals cannot. Noisy normals leave as large residuals as varying albedo does, so
 /// with them the image itself must show edges of albedo.
-pub fn may_be_called_for(pair: &ViewPair, colours: &PhotometricRegistration) -> bool {
-    is_open(pair, None) && (colours.has_clean_normals() || CleanedImage::new(pair).image.is_some())
+pub fn may_be_called_for(pair: &ViewPair, photometric: &PhotometricRegistration) -> bool {
+    is_open(pair, None) && (photometric.has_clean_normals() || CleanedImage::new(pair).image.is_some())
 }
 
 /// The image in which contrast is compared, if the residuals of the best photometric registration also require local
 /// contrast.
 pub fn cleaned(
     pair: &ViewPair,
-    colours: &PhotometricRegistration,
+    photometric: &PhotometricRegistration,
     plain: Option<&PhotometricReport>,
 ) -> Option<CleanedImage> {
     let cleaned = is_open(pair, plain).then(|| CleanedImage::new(pair))?;
-    Some(cleaned).filter(|cleaned| colours.has_clean_normals() || cleaned.image.is_some())
+    Some(cleaned).filter(|cleaned| photometric.has_clean_normals() || cleaned.image.is_some())
 }
 
 /// Whether the options, the views and the registration allow for varying albedo.
@@ -113,15 +114,15 @@ pub fn around(pair: &ViewPair, initial: &Similarity) -> Vec<Similarity> {
 /// only noise, the photometric pose.
 pub fn conclude(
     pair: &ViewPair,
-    colours: &PhotometricRegistration,
+    photometric: &PhotometricRegistration,
     cleaned: &CleanedImage,
     search: &mut ContrastSearch,
 ) -> Option<Decision> {
     let image = cleaned.image(pair);
-    let problem = colours.contrast_problem(pair, image);
+    let problem = photometric.contrast_problem(pair, image);
     let mut contrast = search.outcome(&problem)?;
-    let plain = colours.register_in(pair, image, &contrast.best.pose);
-    let is_coarse = cleaned.was_soft || !colours.has_clean_normals();
+    let plain = photometric.register_in(pair, image, &contrast.best.pose);
+    let is_coarse = cleaned.was_soft || !photometric.has_clean_normals();
     // With blurred chromaticity or noisy normals, contrast is less reliable if photometric registration ends elsewhere.
     if is_coarse {
         add_rival(&contrast.best, &mut contrast.rivals, plain.as_ref().map(|plain| plain.pose));
@@ -133,9 +134,12 @@ pub fn conclude(
     };
     Some(match plain {
         Some(plain) if is_believed(&plain, search) => {
-            Decision { by: Method::Photometric(Box::new(plain)), rivals: Some(Vec::new()) }
+            Decision { rivals: Some(Vec::new()), ..Decision::of(Method::Photometric(Box::new(plain))) }
         }
-        _ => Decision { by: Method::Contrast(Box::new(contrast.best)), rivals: Some(contrast.rivals) },
+        _ => {
+            let found = Contrasted::new(contrast.best);
+            Decision { rivals: Some(contrast.rivals), ..Decision::of(Method::Contrast(Box::new(found))) }
+        }
     })
 }
 

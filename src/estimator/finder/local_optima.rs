@@ -235,7 +235,7 @@ mod tests {
     fn winner(optima: &[LocalOptimum], noise: f64) -> (Option<Origin>, usize) {
         let mut all = LocalOptima {
             optima: optima.to_vec(),
-            image: Residuals { noise: 0.0, covariance: None, image_noise: noise, spread: 1.0 },
+            image: Residuals { noise: 0.0, spatial_covariance: None, image_noise: noise, spread: 1.0 },
         };
         let Ranking { best, rivals } = all.ranked();
         (best.map(|best| best.origin), rivals.len())
@@ -258,7 +258,8 @@ mod tests {
 
     #[test]
     fn registrations_that_end_apart_at_one_optimum_widen_its_sigmas() {
-        let mut all = LocalOptima::new(4, Residuals { noise: 0.0, covariance: None, image_noise: 0.0, spread: 1.0 });
+        let mut all =
+            LocalOptima::new(4, Residuals { noise: 0.0, spatial_covariance: None, image_noise: 0.0, spread: 1.0 });
         let mut enter = |degrees: f64, noise: f64| {
             let registered = optimum(degrees, 900.0, noise).registered;
             all.enter(Origin::Candidate(0), registered);

@@ -26,48 +26,41 @@
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | `trust_region` | an initial pose, and how far from it the answer may lie |
-//! | `nearby` | registrations near an initial pose, before the search |
+//! | `initial_pose/` | how an initial pose is treated: its region and prior, the registrations near it, the decision |
 //! | `candidates` | the search, and the registration of its candidates |
-//! | `photometric` | photometric registration, with its normals and memory |
 //! | `task` | parts of the search that a worker may take, and their results |
 //! | `local_optima` | ends of the registrations; the best pose and its rivals |
 //! | `local_contrast`, `silhouettes` | the methods for varying albedo |
 //! | `opening` | the halved pair in which large views are searched |
-//! | `decision` | the outcome |
+//!
+//! The outcome is a [`Decision`].
 
 mod candidates;
-mod decision;
+pub mod initial_pose;
 mod local_contrast;
 pub mod local_optima;
-mod nearby;
 mod opening;
-mod photometric;
 mod silhouettes;
 pub mod task;
-mod trust_region;
 
 use nalgebra::Matrix3;
 
 use crate::error::Result;
-use crate::pose::{ContrastSearch, ImageGrid, PhotometricReport, SilhouetteReport, Similarity};
+use crate::pose::{ContrastSearch, ImageGrid, SilhouetteReport, Similarity};
 use crate::reason::Activity;
 
-use super::gauge;
+use super::decision::{Decision, Method};
 use super::pair::ViewPair;
+use super::photometric::PhotometricRegistration;
 use candidates::{Candidates, EVERYWHERE};
+use initial_pose::{Near, Nearby, Progress, TrustRegion, explains};
 use local_contrast::CleanedImage;
 use local_optima::{Choice, LocalOptima};
-use nearby::{Nearby, Progress};
 use silhouettes::Anywhere;
 use task::{Finding, Task};
 
 pub use candidates::search;
-pub use decision::{Decision, Method, Staying};
-pub use nearby::explains;
 pub use opening::Opening;
-pub use photometric::{COLLAPSE, PhotometricRegistration};
-pub use trust_region::TrustRegion;
 
 /// Share of the work that precedes local contrast.
 const BEFORE_CONTRAST: f64 = 0.75;
@@ -77,6 +70,14 @@ pub enum Advance {
     /// Not done: share of the work done, and the current activity.
     Ongoing(f64, Activity),
     Done(Decision),
+    /// Nothing could be registered.
+    Nothing,
+}
+
+/// The beginning near an initial pose.
+pub enum Beginning {
+    Done(Decision),
+    Ongoing(Box<Finder>),
 }
 
 /// Where the pose is looked for.
@@ -84,14 +85,6 @@ enum Scope {
     /// A halved pair stands in for large views.
     Everywhere(Option<Box<Opening>>),
     Near(Box<Near>),
-}
-
-/// What is known about the surroundings of an initial pose.
-struct Near {
-    region: TrustRegion,
-    /// The pose registered from the initial one, if it leaves no more than the image's own noise.
-    noisy: Option<Similarity>,
-    silhouettes: Option<Box<SilhouetteReport>>,
 }
 
 /// The current phase.
@@ -113,6 +106,7 @@ struct ByContrast {
 enum Next {
     Phase(Phase),
     Decision(Decision),
+    Nothing,
 }
 
 /// Memory of the photometric registration; the search of a halved pair needs none.
@@ -136,24 +130,30 @@ impl Finder {
         opening: Option<Box<Opening>>,
         grid: ImageGrid,
     ) -> Result<Self> {
-        let (pair, colours) = match &opening {
-            Some(opening) => (&opening.pair, &opening.colours),
+        let (pair, photometric) = match &opening {
+            Some(opening) => (&opening.pair, &opening.photometric),
             None => (pair, &*PhotometricRegistration::prepared(memory, pair)),
         };
         let optima = LocalOptima::new(EVERYWHERE.most, pair.residuals_of_noise(0.0));
-        let may_vary = local_contrast::may_be_called_for(pair, colours);
-        let candidates = Candidates::new(search(pair, grid, colours)?, optima, EVERYWHERE, may_vary);
+        let may_vary = local_contrast::may_be_called_for(pair, photometric);
+        let candidates = Candidates::new(search(pair, grid, photometric)?, optima, EVERYWHERE, may_vary);
         let phase = Phase::Candidates(Box::new(candidates));
         Ok(Self { scope: Scope::Everywhere(opening), phase, chosen: Choice::default() })
     }
 
-    /// Starts from an initial pose from which registration did not explain the image; `plain` is its result, inside the region or not.
-    pub fn near(pair: &ViewPair, region: TrustRegion, plain: Option<PhotometricReport>) -> Self {
-        let plain = plain.map(Box::new).filter(|found| region.holds(pair, &found.pose));
-        let noisy = plain.as_deref().filter(|found| pair.residuals(found).is_noise()).map(|found| found.pose);
+    /// Registers from an initial pose. A result in its region that explains the image is the decision; otherwise a finder
+    /// looks around the pose.
+    pub fn near(pair: &ViewPair, region: &TrustRegion, photometric: &mut PhotometricRegistration) -> Beginning {
+        let plain = photometric.register(pair, &region.initial).ok().map(Box::new);
+        let plain = match plain.filter(|found| region.holds(pair, &found.pose)) {
+            Some(found) if explains(pair, &found) => {
+                return Beginning::Done(Decision::of(Method::Photometric(found)));
+            }
+            plain => plain,
+        };
+        let near = Near::new(pair, region.clone(), plain.as_deref());
         let phase = Phase::Nearby(Box::new(Nearby::new(pair, region.clone(), plain)));
-        let near = Near { region, noisy, silhouettes: None };
-        Self { scope: Scope::Near(Box::new(near)), phase, chosen: Choice::default() }
+        Beginning::Ongoing(Box::new(Self { scope: Scope::Near(Box::new(near)), phase, chosen: Choice::default() }))
     }
 
     /// Whether it looks near an initial pose.
@@ -216,10 +216,11 @@ impl Finder {
             Phase::Candidates(candidates) => self.register_candidates(pair, memory, candidates)?,
             Phase::Contrast(contrast) => self.compare_contrast(pair, memory, contrast)?,
             Phase::Silhouettes(anywhere) => self.compare_silhouettes(pair, memory, anywhere),
-            Phase::Done => Next::Decision(Decision::of(Method::Nothing)),
+            Phase::Done => Next::Nothing,
         };
         Ok(match next {
             Next::Decision(decision) => Advance::Done(decision),
+            Next::Nothing => Advance::Nothing,
             Next::Phase(phase) => {
                 let (share, activity) = phase.progress();
                 self.phase = phase;
@@ -252,10 +253,10 @@ impl Finder {
         mut candidates: Box<Candidates>,
     ) -> Result<Next> {
         let choice = match &mut self.scope {
-            Scope::Everywhere(Some(opening)) => candidates.advance(&opening.pair, &mut opening.colours, |_| true),
+            Scope::Everywhere(Some(opening)) => candidates.advance(&opening.pair, &mut opening.photometric, |_| true),
             scope => {
-                let colours = PhotometricRegistration::prepared(memory, pair);
-                candidates.advance(pair, colours, |pose| scope.holds(pair, pose))
+                let photometric = PhotometricRegistration::prepared(memory, pair);
+                candidates.advance(pair, photometric, |pose| scope.holds(pair, pose))
             }
         };
         let Some(mut choice) = choice else { return Ok(Next::Phase(Phase::Candidates(candidates))) };
@@ -277,9 +278,8 @@ impl Finder {
         mut looked_at: Vec<Similarity>,
     ) -> Result<Next> {
         self.chosen = choice;
-        let colours = PhotometricRegistration::prepared(memory, pair);
-        colours.keep_ends(self.chosen.ends.clone());
-        let Some(cleaned) = local_contrast::cleaned(pair, colours, self.chosen.best.as_deref()) else {
+        let photometric = PhotometricRegistration::prepared(memory, pair);
+        let Some(cleaned) = local_contrast::cleaned(pair, photometric, self.chosen.best.as_deref()) else {
             return self.next_method(pair, memory, None);
         };
         let starts = match &self.scope {
@@ -290,7 +290,7 @@ impl Finder {
             }
             Scope::Near(near) => local_contrast::around(pair, &near.region.initial),
         };
-        let search = ContrastSearch::new(&colours.contrast_problem(pair, cleaned.image(pair)), starts);
+        let search = ContrastSearch::new(&photometric.contrast_problem(pair, cleaned.image(pair)), starts);
         Ok(Next::Phase(Phase::Contrast(Box::new(ByContrast { cleaned, search }))))
     }
 
@@ -302,58 +302,55 @@ impl Finder {
         mut contrast: Box<ByContrast>,
     ) -> Result<Next> {
         let ByContrast { cleaned, search } = &mut *contrast;
-        let colours = &*PhotometricRegistration::prepared(memory, pair);
-        if !search.advance(&colours.contrast_problem(pair, cleaned.image(pair))) {
+        let photometric = &*PhotometricRegistration::prepared(memory, pair);
+        if !search.advance(&photometric.contrast_problem(pair, cleaned.image(pair))) {
             return Ok(Next::Phase(Phase::Contrast(contrast)));
         }
-        let found = local_contrast::conclude(pair, colours, cleaned, search);
+        let found = local_contrast::conclude(pair, photometric, cleaned, search);
         self.next_method(pair, memory, found)
     }
 
     /// A slice of the registrations by silhouettes without an initial pose.
     fn compare_silhouettes(&mut self, pair: &ViewPair, memory: &mut Memory, mut anywhere: Box<Anywhere>) -> Next {
         if anywhere.advance(pair, PhotometricRegistration::prepared(memory, pair).normals()) {
-            return Next::Decision(everywhere_by(anywhere.best(), std::mem::take(&mut self.chosen)));
+            return everywhere_by(anywhere.best(), std::mem::take(&mut self.chosen));
         }
         Next::Phase(Phase::Silhouettes(anywhere))
     }
 
     /// The decision, or the method that comes next after local contrast, which `found` a pose or did not.
     fn next_method(&mut self, pair: &ViewPair, memory: &mut Memory, found: Option<Decision>) -> Result<Next> {
-        let colours = PhotometricRegistration::prepared(memory, pair);
+        let photometric = PhotometricRegistration::prepared(memory, pair);
         if let Scope::Near(near) = &mut self.scope {
             let choice = std::mem::take(&mut self.chosen);
-            if found.is_none() && near.begins_again(pair, colours, &choice) {
-                colours.keep_near(near.region.prior(pair));
-                let nearby = Nearby::again(pair, near.region.clone(), near.silhouettes.take());
-                return Ok(Next::Phase(Phase::Nearby(Box::new(nearby))));
+            if found.is_none() && near.begins_again(pair, photometric, &choice) {
+                return Ok(Next::Phase(Phase::Nearby(Box::new(near.begin_again(pair, photometric)))));
             }
-            return near.conclude(pair, colours, choice, found).map(Next::Decision);
+            return near.conclude(pair, photometric, choice, found).map(Next::Decision);
         }
-        let decision = match found {
-            Some(decision) => decision,
-            None => {
-                let anywhere = silhouettes::are_called_for(pair, self.chosen.best.as_deref())
-                    .then(|| Anywhere::new(pair, colours.normals()));
-                if let Some(anywhere) = anywhere.flatten() {
-                    return Ok(Next::Phase(Phase::Silhouettes(Box::new(anywhere))));
-                }
-                everywhere_by(None, std::mem::take(&mut self.chosen))
-            }
-        };
-        Ok(Next::Decision(decision))
+        if let Some(decision) = found {
+            return Ok(Next::Decision(decision));
+        }
+        let are_called_for = silhouettes::are_called_for(pair, self.chosen.best.as_deref());
+        Ok(match are_called_for.then(|| Anywhere::new(pair, photometric.normals())).flatten() {
+            Some(anywhere) => Next::Phase(Phase::Silhouettes(Box::new(anywhere))),
+            None => everywhere_by(None, std::mem::take(&mut self.chosen)),
+        })
     }
 }
 
 /// The decision for silhouettes, or else for the best registration.
-fn everywhere_by(silhouettes: Option<SilhouetteReport>, Choice { best, rivals, ends }: Choice) -> Decision {
+fn everywhere_by(silhouettes: Option<SilhouetteReport>, Choice { best, rivals, ends }: Choice) -> Next {
     match (silhouettes, best) {
-        (Some(found), _) => Decision { by: Method::Silhouettes(Box::new(found)), rivals: Some(Vec::new()) },
+        (Some(found), _) => {
+            let by = Method::Silhouettes(Box::new(found));
+            Next::Decision(Decision { rivals: Some(Vec::new()), ..Decision::of(by) })
+        }
         (None, Some(mut best)) => {
             best.uncertainty.add_spread(&best.pose, &ends);
-            Decision { by: Method::Photometric(best), rivals: Some(rivals) }
+            Next::Decision(Decision { by: Method::Photometric(best), rivals: Some(rivals), ends })
         }
-        (None, None) => Decision { by: Method::Nothing, rivals: Some(rivals) },
+        (None, None) => Next::Nothing,
     }
 }
 
@@ -372,64 +369,6 @@ impl Scope {
             Self::Everywhere(_) => true,
         }
     }
-}
-
-impl Near {
-    /// Whether to repeat the registrations near the initial pose: once, and only if a single albedo does not explain the image.
-    fn begins_again(&self, pair: &ViewPair, colours: &PhotometricRegistration, choice: &Choice) -> bool {
-        let is_explained = choice.best.as_ref().is_some_and(|best| !silhouettes::has_varying_albedo(pair, best));
-        !colours.is_kept_near() && !is_explained && self.region.prior(pair).is_some()
-    }
-
-    /// Takes the first pose within the trust region: from local contrast, the image or silhouettes. Otherwise keeps the initial pose.
-    fn conclude(
-        &mut self,
-        pair: &ViewPair,
-        colours: &mut PhotometricRegistration,
-        Choice { best, rivals, .. }: Choice,
-        found: Option<Decision>,
-    ) -> Result<Decision> {
-        let region = &self.region;
-        let is_near = |found: &Decision| found.pose().is_some_and(|pose| region.holds(pair, pose));
-        if let Some(mut found) = found.filter(is_near) {
-            if let (Method::Contrast(contrast), Some(rivals)) = (&found.by, &mut found.rivals) {
-                // A pose that leaves only the image's own noise is a rival, however large the spatial covariance of its residuals.
-                local_contrast::add_rival(contrast, rivals, self.noisy);
-            }
-            return Ok(found);
-        }
-        let silhouettes = self.silhouettes.take();
-        // If the albedo varies, a photometric pose counts less than silhouettes when it hardly fits or is less certain.
-        let is_trusted = |best: &PhotometricReport| match &silhouettes {
-            Some(_) if !silhouettes::has_varying_albedo(pair, best) => true,
-            Some(found) => {
-                !pair.residuals(best).is_unexplained()
-                    && best.uncertainty.largest_rotation() <= found.uncertainty.largest_rotation()
-            }
-            None => true,
-        };
-        let Some(best) = best.filter(|best| is_trusted(best)) else {
-            return Ok(Decision::of(silhouettes.map_or_else(|| stay(pair, colours, region), Method::Silhouettes)));
-        };
-        // Candidates are registered on a sample of the points; all points follow.
-        let found = colours.register_all(pair, *best)?;
-        Ok(match region.holds(pair, &found.pose) {
-            true => Decision { by: Method::Photometric(Box::new(found)), rivals: Some(rivals) },
-            false => Decision::of(stay(pair, colours, region)),
-        })
-    }
-}
-
-/// Keeps the initial pose.
-fn stay(pair: &ViewPair, colours: &mut PhotometricRegistration, region: &TrustRegion) -> Method {
-    // An object shrunk to a few pixels fits any image, so its size must be plausible as well.
-    let of_size = Similarity { scale: gauge::unit_scale(pair), ..region.initial };
-    let explains = |found: Box<PhotometricReport>| found.noise < pair.image.log_spread();
-    let has_size = gauge::keeps_size(pair, &region.initial, &of_size);
-    Method::Initial(match has_size && colours.judge(pair, &region.initial).is_some_and(explains) {
-        true => Staying::Explains,
-        false => Staying::ExplainsNothing,
-    })
 }
 
 impl Phase {

@@ -3,8 +3,8 @@
 
 use nalgebra::Vector3;
 
-use super::photometric::PhotometricRegistration;
 use crate::estimator::pair::ViewPair;
+use crate::estimator::photometric::PhotometricRegistration;
 use crate::options::Start;
 use crate::pose::{PhotometricReport, Similarity};
 use crate::view::{ColourView, DepthView};
@@ -16,7 +16,7 @@ const MOST_PIXELS: usize = 128 * 128;
 /// A coarser pair, its photometric registration, and the transformation from its frames to those of the views.
 pub struct Opening {
     pub pair: ViewPair,
-    pub colours: PhotometricRegistration,
+    pub photometric: PhotometricRegistration,
     image: Frame,
     depth: Frame,
 }
@@ -51,7 +51,7 @@ impl Opening {
         let mut options = pair.options.clone();
         options.scale = options.scale.map(|scale| scale * depth_frame.unit / image_frame.unit);
         let pair = ViewPair { image, depth, options, prior: pair.prior.clone(), way: None };
-        Some(Self { colours: PhotometricRegistration::new(&pair), pair, image: image_frame, depth: depth_frame })
+        Some(Self { photometric: PhotometricRegistration::new(&pair), pair, image: image_frame, depth: depth_frame })
     }
 
     /// Converts a pose of the coarse pair to the views' frames.

@@ -2,13 +2,14 @@
 //! everywhere.
 
 use crate::diagnosis::{Alternative, Diagnosis};
-use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::options::Registration;
 use crate::pose::{
     Angles, PhotometricReport, PosePrior, SilhouetteProblem, SilhouetteRegistration, SilhouetteReport, Similarity,
 };
 use crate::view::Normals;
+
+use super::initial_pose::{aligned_prior, centred};
 
 /// A registration with fewer depth discontinuities, or a larger noise of their distances to the silhouette (pixels), is
 /// ignored.
@@ -17,11 +18,8 @@ const LARGEST_DISCONTINUITY_NOISE: f64 = 6.0;
 /// Angles in degrees by which the starts are turned about y and x if there is no initial pose.
 const TURNS: [f64; 3] = [0.0, -32.0, 32.0];
 const TILTS: [f64; 3] = [0.0, -24.0, 24.0];
-/// Sigma of the prior if no initial pose is given, degrees and shares of the distance: both cameras look from roughly
-/// the same side.
+/// Sigma of the prior's rotation if no initial pose is given, degrees: both cameras look from roughly the same side.
 const ANYWHERE_DEGREES: f64 = 25.0;
-const ANYWHERE_ACROSS: f64 = 0.12;
-const ANYWHERE_ALONG: f64 = 0.08;
 
 /// Whether the photometric residuals show varying albedo, so that silhouettes decide if they can.
 pub fn has_varying_albedo(pair: &ViewPair, found: &PhotometricReport) -> bool {
@@ -55,8 +53,8 @@ pub struct Anywhere {
 impl Anywhere {
     /// `None` if silhouettes constrain nothing.
     pub fn new(pair: &ViewPair, normals: &Normals) -> Option<Self> {
-        let turned = |angles: Angles| gauge::centred(pair, angles.rotation());
-        let prior = placed_by_middles(pair, turned(Angles::default()), ANYWHERE_DEGREES)?;
+        let turned = |angles: Angles| centred(pair, angles.rotation());
+        let prior = aligned_prior(pair, turned(Angles::default()), ANYWHERE_DEGREES)?;
         let starts = TURNS.into_iter().flat_map(|beta| TILTS.map(|alpha| turned(Angles { alpha, beta, gamma: 0.0 })));
         let mut starts: Vec<_> = starts.collect();
         starts.reverse();
@@ -82,18 +80,6 @@ impl Anywhere {
     pub fn best(&mut self) -> Option<SilhouetteReport> {
         self.best.take()
     }
-}
-
-/// The prior without a given translation: `pose` puts the centre of the depth points at that of the image's object;
-/// `degrees` is the sigma of its rotation.
-pub fn placed_by_middles(pair: &ViewPair, pose: Similarity, degrees: f64) -> Option<PosePrior> {
-    // Orthographic images have other methods, and without a mask the centre of the object is unknown.
-    if pair.image.camera.is_orthographic() || !pair.image.whole.object.contains(&false) {
-        return None;
-    }
-    let distance = pose.apply(pair.depth.points.centroid()).z;
-    let (across, along) = (ANYWHERE_ACROSS * distance, ANYWHERE_ALONG * distance);
-    Some(PosePrior { pose, rotation: degrees.to_radians(), across, along })
 }
 
 fn is_seen(found: &SilhouetteReport) -> bool {

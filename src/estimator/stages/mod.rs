@@ -5,7 +5,6 @@
 //! [`Solution`]: super::solution::Solution
 
 mod albedo;
-mod contrasted;
 mod correspondences;
 mod light;
 mod refinement;
@@ -17,7 +16,7 @@ pub use albedo::AlbedoStage;
 pub use correspondences::correspondence_problem;
 pub use light::{Inputs, LightStage};
 pub use refinement::{RefinementStage, RefinementTask, terms_from_numbers};
-pub use registration::{Decided, Registered, Registering, RegistrationStage};
+pub use registration::{Registered, Registering, RegistrationStage};
 pub use shape::ShapeStage;
 
 /// All stages of an iteration, in order, except that the albedo is fitted only under a settled pose.

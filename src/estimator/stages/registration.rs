@@ -1,17 +1,19 @@
-//! The registration stage: runs the finder or matches the surfaces, depending on the options, and keeps the result.
+//! The registration stage: runs the finder or matches the surfaces, depending on the options, and keeps the decision.
 
-use crate::estimator::finder::{Decision, Finder, Method, PhotometricRegistration, Staying, TrustRegion, explains};
+use crate::estimator::decision::{Decision, Method};
+use crate::estimator::finder::initial_pose::TrustRegion;
+use crate::estimator::finder::{Beginning, Finder};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
+use crate::estimator::photometric::PhotometricRegistration;
 use crate::estimator::solution::Solution;
 use crate::light::Light;
 use crate::options::{Registration, Start};
-use crate::pose::{PhotometricReport, SilhouetteReport, Similarity, Uncertainty};
+use crate::pose::{PhotometricReport, Similarity, Uncertainty};
 use crate::reason::Reason;
 use crate::view::Normals;
 
 use super::albedo::AlbedoStage;
-use super::contrasted::Contrasted;
 use super::light::Inputs;
 use super::surfaces::{Matched, SurfaceRegistration};
 
@@ -31,34 +33,31 @@ pub struct Registered {
 }
 
 impl Registered {
-    /// A better pose and nothing else.
-    const fn of_pose(pose: Similarity) -> Self {
-        Self { pose, light: None, exposure: None, uncertainty: None, improved: true, rivals: None }
+    /// A better pose, its sigmas, and nothing else.
+    const fn of(pose: Similarity, uncertainty: Option<Uncertainty>) -> Self {
+        Self { pose, light: None, exposure: None, uncertainty, improved: true, rivals: None }
     }
 
-    fn by_silhouettes(found: &SilhouetteReport) -> Self {
-        Self { uncertainty: Some(found.uncertainty.clone()), ..Self::of_pose(found.pose) }
+    /// Pose and light of a photometric registration.
+    fn photometric(pair: &ViewPair, found: &PhotometricReport, present: &Similarity, is_coarse: bool) -> Self {
+        Self {
+            light: Some(found.light),
+            // Normals flattened by noise bias the exposure, so the stages find it again.
+            exposure: (!is_coarse).then_some(found.exposure),
+            ..Self::of(with_gauge_of(pair, found.pose, present), Some(found.uncertainty.clone()))
+        }
     }
 }
 
 /// Registers the depth view to the image, photometrically or by matching surfaces.
 pub struct RegistrationStage {
-    /// Present only if the options require it, because it holds splines of the image.
-    colours: Option<PhotometricRegistration>,
+    /// Present only if the options require it, because it holds splines of the image; a finder makes it if it is missing.
+    pub photometric: Option<PhotometricRegistration>,
+    /// The decision of the finder, and its method's latest result.
+    pub decision: Option<Decision>,
     surfaces: SurfaceRegistration,
     /// Region around the initial pose, if there is one.
     region: Option<TrustRegion>,
-    /// The result that determines the pose, once the finder has decided.
-    decided: Option<Decided>,
-}
-
-/// The result that determines the pose.
-pub enum Decided {
-    Photometric,
-    Contrast(Box<Contrasted>),
-    Silhouettes(Box<SilhouetteReport>),
-    /// No better pose was found; the initial pose stays.
-    Initial(Staying),
 }
 
 /// Result of the stage.
@@ -75,98 +74,87 @@ impl Registering {
 }
 
 impl RegistrationStage {
-    /// Leaves photometric registration out if `colours_wait`; the finder then makes it after the search.
-    pub fn new(pair: &ViewPair, colours_wait: bool) -> Self {
-        let by_colours = pair.options.start == Start::Search || pair.options.registration == Registration::Joint;
-        let by_colours = by_colours && !colours_wait;
+    /// Leaves photometric registration out if `photometric_waits`; the finder then makes it after the search.
+    pub fn new(pair: &ViewPair, photometric_waits: bool) -> Self {
+        let is_photometric = pair.options.start == Start::Search || pair.options.registration == Registration::Joint;
+        let is_photometric = is_photometric && !photometric_waits;
         Self {
-            colours: by_colours.then(|| PhotometricRegistration::new(pair)),
+            photometric: is_photometric.then(|| PhotometricRegistration::new(pair)),
+            decision: None,
             surfaces: SurfaceRegistration::new(),
             region: TrustRegion::of(pair),
-            decided: None,
         }
-    }
-
-    /// The photometric registration, for a finder to use or to make.
-    pub const fn memory(&mut self) -> &mut Option<PhotometricRegistration> {
-        &mut self.colours
     }
 
     /// The registration that this pair needs now: with noisy depth, photometric registration finds the pose and ICP settles it.
     pub fn kind(&self, pair: &ViewPair) -> Registration {
-        let settled_by_surface = |colours: &PhotometricRegistration| colours.is_coarse() && colours.found().is_some();
         match pair.options.registration {
-            Registration::Joint if self.colours.as_ref().is_some_and(settled_by_surface) => Registration::Icp,
+            Registration::Joint if self.is_coarse() && self.decided_photometrically().is_some() => Registration::Icp,
             asked => asked,
         }
     }
 
+    /// The method that the pose rests on; `None` before the decision, and if surfaces settle the pose.
+    pub fn method(&self) -> Option<&Method> {
+        let settled_by_surfaces = |by: &Method| self.is_coarse() && matches!(by, Method::Photometric(_));
+        self.decision.as_ref().map(|decision| &decision.by).filter(|by| !settled_by_surfaces(by))
+    }
+
     /// Result of the photometric registration, unless depth noise leaves pose and light to other stages.
-    pub fn found_by_colours(&self) -> Option<&PhotometricReport> {
-        self.colours.as_ref().filter(|colours| !colours.is_coarse()).and_then(PhotometricRegistration::found)
+    pub fn found_photometrically(&self) -> Option<&PhotometricReport> {
+        self.decided_photometrically().filter(|_| !self.is_coarse())
+    }
+
+    fn decided_photometrically(&self) -> Option<&PhotometricReport> {
+        self.decision.as_ref().and_then(Decision::photometric)
+    }
+
+    fn is_coarse(&self) -> bool {
+        self.photometric.as_ref().is_some_and(PhotometricRegistration::is_coarse)
     }
 
     /// The best measured normals of the depth view.
     pub fn measured_normals<'a>(&'a self, pair: &'a ViewPair) -> &'a Normals {
-        self.colours.as_ref().map_or(&pair.depth.normals, PhotometricRegistration::normals)
+        self.photometric.as_ref().map_or(&pair.depth.normals, PhotometricRegistration::normals)
     }
 
     /// Adopts the finder's decision.
     ///
     /// # Errors
-    /// [`Reason::NoPose`] if nothing could be registered, [`Reason::SizeRunsAway`] if the size departs from the initial
-    /// pose's.
+    /// [`Reason::SizeRunsAway`] if the size departs from the initial pose's.
     pub fn adopt(
         &mut self,
         pair: &ViewPair,
-        decision: Decision,
+        mut decision: Decision,
         present: &Similarity,
     ) -> Result<Option<Registered>, Reason> {
-        let Decision { by, rivals } = decision;
-        let registered = match by {
-            Method::Nothing => return Err(Reason::NoPose { scale_is_held: gauge::held_scale(pair).is_some() }),
-            Method::Initial(staying) => {
-                self.decided = Some(Decided::Initial(staying));
-                return Ok(None);
-            }
-            Method::Silhouettes(found) => {
-                let registered = Registered::by_silhouettes(&found);
-                self.decided = Some(Decided::Silhouettes(found));
-                registered
-            }
+        let rivals = decision.rivals.take();
+        let registered = match &decision.by {
+            Method::Initial(_) => None,
+            Method::Silhouettes(found) => Some(Registered::of(found.pose, Some(found.uncertainty.clone()))),
             Method::Contrast(found) => {
-                let pose = with_gauge_of(pair, found.pose, present);
-                let uncertainty = Some(found.uncertainty.clone());
-                self.decided = Some(Decided::Contrast(Box::new(Contrasted::new(*found))));
-                Registered { uncertainty, ..Registered::of_pose(pose) }
+                let pose = with_gauge_of(pair, found.report.pose, present);
+                Some(Registered::of(pose, Some(found.report.uncertainty.clone())))
             }
             Method::Photometric(found) => {
-                self.decided = Some(Decided::Photometric);
-                let registered = self.registered(pair, &found, present);
-                let size = self.region.is_some().then(|| check_size(pair, &found.pose, present));
-                if let Some(colours) = &mut self.colours {
-                    colours.adopt(*found);
+                if self.region.is_some() {
+                    check_size(pair, &found.pose, present)?;
                 }
-                size.transpose()?;
-                registered
+                Some(Registered::photometric(pair, found, present, self.is_coarse()))
             }
         };
-        Ok(Some(Registered { rivals, ..registered }))
-    }
-
-    /// What the pose rests on, once the finder has decided.
-    pub const fn decided(&self) -> Option<&Decided> {
-        self.decided.as_ref()
+        self.decision = Some(decision);
+        Ok(registered.map(|registered| Registered { rivals, ..registered }))
     }
 
     /// Names the kind of registration that determined the pose.
     pub fn engine(&self, pair: &ViewPair) -> &'static str {
-        match (self.kind(pair), &self.decided) {
+        match (self.kind(pair), self.decision.as_ref().map(|decision| &decision.by)) {
             (Registration::Fixed, _) => "held pose",
             (Registration::Icp, _) => "surfaces",
-            (Registration::Joint, Some(Decided::Initial(_))) => "initial pose kept",
-            (Registration::Joint, Some(Decided::Silhouettes(_))) => "silhouettes",
-            (Registration::Joint, Some(Decided::Contrast(_))) => "local contrast",
+            (Registration::Joint, Some(Method::Initial(_))) => "initial pose kept",
+            (Registration::Joint, Some(Method::Silhouettes(_))) => "silhouettes",
+            (Registration::Joint, Some(Method::Contrast(_))) => "local contrast",
             (Registration::Joint, _) => "photometric registration",
         }
     }
@@ -175,21 +163,14 @@ impl RegistrationStage {
     pub fn keeps(&self, pair: &ViewPair, pose: &Similarity) -> bool {
         match self.kind(pair) {
             Registration::Fixed => true,
-            Registration::Joint => {
-                let stands = match &self.decided {
-                    Some(Decided::Initial(_) | Decided::Silhouettes(_)) => true,
-                    Some(Decided::Contrast(found)) => found.stands(),
-                    Some(Decided::Photometric) | None => false,
-                };
-                stands || self.colours.as_ref().is_some_and(|colours| colours.ended_in(pose))
-            }
+            Registration::Joint => self.decision.as_ref().is_some_and(|decision| decision.by.keeps(pose)),
             Registration::Icp => false,
         }
     }
 
     /// Whether the albedo is to be fitted under `pose`: the pose has settled, or waits only for the albedo.
     pub fn requires_albedo(&self, pair: &ViewPair, pose: &Similarity) -> bool {
-        matches!(self.decided, Some(Decided::Contrast(_))) || self.keeps(pair, pose)
+        matches!(self.method(), Some(Method::Contrast(_))) || self.keeps(pair, pose)
     }
 
     /// Registers from the current pose, without the albedo found under it; finds nothing if the pose is fixed. If an
@@ -200,78 +181,57 @@ impl RegistrationStage {
         albedo: &AlbedoStage,
         solution: &Solution,
     ) -> Result<Registering, Reason> {
-        let pair = inputs.pair;
+        let (pair, present) = (inputs.pair, &solution.pose);
         match self.kind(pair) {
             Registration::Fixed => Ok(Registering::Done(None)),
-            Registration::Joint if self.region.is_some() && self.decided.is_none() => {
-                self.register_initial(pair, &solution.pose)
+            Registration::Icp => self.match_surfaces(inputs, solution).map(Registering::of),
+            Registration::Joint if self.decision.is_some() => {
+                self.register_again(pair, albedo, present).map(Registering::of)
             }
-            Registration::Joint => self.register_colours(pair, albedo, &solution.pose).map(Registering::of),
-            Registration::Icp => {
-                let Matched { mut pose, mut improved, uncertainty } = self.surfaces.register(inputs, solution)?;
-                if self.region.as_ref().is_some_and(|region| !region.holds(pair, &pose)) {
-                    (pose, improved) = (solution.pose, false);
+            Registration::Joint => {
+                let (Some(photometric), Some(region)) = (&mut self.photometric, &self.region) else {
+                    return Ok(Registering::Done(None));
+                };
+                match Finder::near(pair, region, photometric) {
+                    Beginning::Done(decision) => self.adopt(pair, decision, present).map(Registering::of),
+                    Beginning::Ongoing(finder) => Ok(Registering::Finding(finder)),
                 }
-                let uncertainty = improved.then_some(uncertainty);
-                let found = Registered { pose, light: None, exposure: None, uncertainty, improved, rivals: None };
-                Ok(Registering::of(Some(found)))
             }
         }
     }
 
-    /// Registers from the initial pose. A result that explains the image is the answer; otherwise a finder searches
-    /// around it.
-    fn register_initial(&mut self, pair: &ViewPair, present: &Similarity) -> Result<Registering, Reason> {
-        let (Some(colours), Some(region)) = (&mut self.colours, &self.region) else {
-            return Ok(Registering::Done(None));
-        };
-        let found = colours.register(pair, &region.initial).ok().cloned();
-        let is_answer = |found: &PhotometricReport| region.holds(pair, &found.pose) && explains(pair, found);
-        match found {
-            Some(found) if is_answer(&found) => {
-                self.adopt(pair, Decision::of(Method::Photometric(Box::new(found))), present).map(Registering::of)
-            }
-            _ => {
-                let plain = colours.take_found();
-                Ok(Registering::Finding(Box::new(Finder::near(pair, region.clone(), plain))))
-            }
-        }
-    }
-
-    /// Finds pose and light together photometrically, or keeps the pose of the method that decided.
-    fn register_colours(
+    /// Registers again by the method that found the pose, or keeps its pose.
+    fn register_again(
         &mut self,
         pair: &ViewPair,
         albedo: &AlbedoStage,
         start: &Similarity,
     ) -> Result<Option<Registered>, Reason> {
-        let Some(colours) = &mut self.colours else { return Ok(None) };
-        match &mut self.decided {
-            Some(Decided::Initial(_) | Decided::Silhouettes(_)) => Ok(None),
-            Some(Decided::Contrast(found)) => {
-                let pose = found.follow(pair, colours, albedo, self.region.as_ref());
-                Ok(pose.map(|pose| Registered::of_pose(with_gauge_of(pair, pose, start))))
+        let is_coarse = self.is_coarse();
+        let (Some(photometric), Some(Decision { by, ends, .. })) = (&mut self.photometric, &mut self.decision) else {
+            return Ok(None);
+        };
+        match by {
+            Method::Initial(_) | Method::Silhouettes(_) => Ok(None),
+            Method::Contrast(found) => {
+                let pose = found.follow(pair, photometric, albedo, self.region.as_ref());
+                Ok(pose.map(|pose| Registered::of(with_gauge_of(pair, pose, start), None)))
             }
-            Some(Decided::Photometric) | None => {
-                let found = colours.register(pair, start)?.clone();
+            Method::Photometric(found) => {
+                photometric.register_again(pair, found, start, ends)?;
                 check_size(pair, &found.pose, start)?;
-                Ok(Some(self.registered(pair, &found, start)))
+                Ok(Some(Registered::photometric(pair, found, start, is_coarse)))
             }
         }
     }
 
-    fn registered(&self, pair: &ViewPair, found: &PhotometricReport, present: &Similarity) -> Registered {
-        let pose = with_gauge_of(pair, found.pose, present);
-        // Normals flattened by noise bias the exposure, so the stages find it again.
-        let is_coarse = self.colours.as_ref().is_some_and(PhotometricRegistration::is_coarse);
-        Registered {
-            pose,
-            light: Some(found.light),
-            exposure: (!is_coarse).then_some(found.exposure),
-            uncertainty: Some(found.uncertainty.clone()),
-            improved: true,
-            rivals: None,
+    /// Matches both surfaces; the pose stays if it would leave the region of an initial one.
+    fn match_surfaces(&mut self, inputs: Inputs<'_>, solution: &Solution) -> Result<Option<Registered>, Reason> {
+        let Matched { mut pose, mut improved, uncertainty } = self.surfaces.register(inputs, solution)?;
+        if self.region.as_ref().is_some_and(|region| !region.holds(inputs.pair, &pose)) {
+            (pose, improved) = (solution.pose, false);
         }
+        Ok(Some(Registered { improved, ..Registered::of(pose, improved.then_some(uncertainty)) }))
     }
 }
 

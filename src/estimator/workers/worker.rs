@@ -1,10 +1,11 @@
 //! Performs parts of an estimator's work in another thread, with a separate instance of the module.
 
 use crate::error::Result;
-use crate::estimator::finder::PhotometricRegistration;
+use crate::estimator::finder::initial_pose::TrustRegion;
 use crate::estimator::finder::local_optima::RegisteredCandidate;
-use crate::estimator::finder::{Opening, TrustRegion, search};
+use crate::estimator::finder::{Opening, search};
 use crate::estimator::pair::ViewPair;
+use crate::estimator::photometric::PhotometricRegistration;
 use crate::options::Options;
 use crate::pose::{ImageGrid, Search};
 use crate::view::{ColourImage, DepthMap};
@@ -29,8 +30,8 @@ impl Searched {
     /// The pair and its photometric registration.
     fn parts<'a>(&'a mut self, pair: &'a ViewPair) -> (&'a ViewPair, &'a mut PhotometricRegistration) {
         match self {
-            Self::Views(colours) => (pair, colours),
-            Self::Opening(opening) => (&opening.pair, &mut opening.colours),
+            Self::Views(photometric) => (pair, photometric),
+            Self::Opening(opening) => (&opening.pair, &mut opening.photometric),
         }
     }
 }
@@ -70,18 +71,18 @@ impl Worker {
             Some(memory) => memory,
             none => {
                 let mut searched = Searched::of(pair);
-                let (pair, colours) = searched.parts(pair);
-                let search = search(pair, ImageGrid::new(&pair.image)?, colours)?;
+                let (pair, photometric) = searched.parts(pair);
+                let search = search(pair, ImageGrid::new(&pair.image)?, photometric)?;
                 none.insert((searched, search))
             }
         };
-        let (pair, colours) = searched.parts(pair);
+        let (pair, photometric) = searched.parts(pair);
         Ok(Finding(match &task.0 {
             Work::Search(task) => Found::Search(search.perform(task)),
             Work::Register(index, start, is_near) => {
                 let region = TrustRegion::of(pair).filter(|_| *is_near);
-                colours.keep_near(region.and_then(|region| region.prior(pair)));
-                let report = colours.register_candidate(pair, start);
+                photometric.keep_near(region.and_then(|region| region.prior(pair)));
+                let report = photometric.register_candidate(pair, start);
                 Found::Registered(*index, report.map(RegisteredCandidate::of))
             }
         }))

@@ -55,7 +55,7 @@ pub struct ShadingReport {
     pub converged: usize,
     /// No step, however short, lowered the objective.
     pub stalled: usize,
-    /// `MOST_STEPS` were not enough.
+    /// `MOST_DESCENT_STEPS` were not enough.
     pub capped: usize,
     /// The pixel has neither a colour nor a prior, so it gets no normal.
     pub skipped: usize,
@@ -64,17 +64,17 @@ pub struct ShadingReport {
 /// Solver with its table of directions; holds no pixels.
 #[derive(Clone, Debug)]
 pub struct ShadingSolver {
-    pub(super) directions: Vec<[f32; 3]>,
+    pub(crate) directions: Vec<[f32; 3]>,
     shades: Vec<[f32; 3]>,
 }
 
 /// Number of directions on the hemisphere that are compared: 5 degrees apart, well within the basin of the local solve.
 const DIRECTIONS: usize = 600;
 /// n_z of the flattest direction. Closer to the edge of the hemisphere, a surface is too steep to be seen in a pixel.
-pub(super) const LARGEST_N_Z: f32 = -0.05;
+pub(crate) const LARGEST_N_Z: f32 = -0.05;
 /// Largest number of trials of one pixel in one solve. The paper allows 1000 and needs 300; Gauss-Newton needs about
 /// five.
-pub(super) const MOST_STEPS: usize = 30;
+pub(crate) const MOST_DESCENT_STEPS: usize = 30;
 /// Length of a step (in units of a unit normal, 0.06 degrees) below which it is the last one. It is taken, and leaves
 /// an error of at most a tenth of its length, a hundredth of the best normals' error.
 const SMALLEST_STEP: f32 = 1e-3;
@@ -132,7 +132,8 @@ impl ShadingSolver {
             if (red.finite() | prior.finite()).any() {
                 let pixels = Pixels::new(problem, index, weights, &polynomials);
                 let (start, here, known) = self.start(&pixels, normals.lanes(index));
-                solved = known.select3(normalise(pixels.descend(start, here, known, MOST_STEPS, &mut counts)), solved);
+                solved = known
+                    .select3(normalise(pixels.descend(start, here, known, MOST_DESCENT_STEPS, &mut counts)), solved);
             }
             solved[0].store(&mut normals.x[index..]);
             solved[1].store(&mut normals.y[index..]);
@@ -169,7 +170,7 @@ impl ShadingSolver {
 }
 
 /// The terms of [`LANES`] pixels. Missing values are zero and have no weight.
-pub(super) struct Pixels<'a> {
+pub(crate) struct Pixels<'a> {
     log: [Lanes; 3],
     prior: [Lanes; 3],
     pub(super) has_colour: Mask,
@@ -184,7 +185,7 @@ pub(super) struct Pixels<'a> {
 }
 
 impl<'a> Pixels<'a> {
-    pub(super) fn new(
+    pub(crate) fn new(
         problem: ShadingProblem<'_>,
         index: usize,
         weights: ShadingWeights,
@@ -225,7 +226,7 @@ impl<'a> Pixels<'a> {
         robust::rho(self.prior_weight * squared, squared * self.inverse_square_scale)
     }
 
-    pub(super) fn objective(&self, normal: [Lanes; 3]) -> Lanes {
+    pub(crate) fn objective(&self, normal: [Lanes; 3]) -> Lanes {
         let unit = dot(normal, normal) - Lanes::splat(1.0);
         let residuals = self.residuals(normal);
         self.colour_weight * dot(residuals, residuals) + self.prior_term(normal) + self.unit_weight * unit * unit
@@ -233,7 +234,7 @@ impl<'a> Pixels<'a> {
 
     /// Linearises the objective around a normal.
     #[inline(never)]
-    pub(super) fn linearise(&self, normal: [Lanes; 3]) -> LinearisedPixels {
+    pub(crate) fn linearise(&self, normal: [Lanes; 3]) -> LinearisedPixels {
         let (zero, one, two) = (Lanes::splat(0.0), Lanes::splat(1.0), Lanes::splat(2.0));
         let mut sums = LinearisedPixels { objective: zero, gradient: [zero; 3], matrix: [zero; 6] };
         let unit = dot(normal, normal) - one;
@@ -257,7 +258,7 @@ impl<'a> Pixels<'a> {
     /// Damped Gauss-Newton; a step to a normal that faces away from the camera is rejected. The loop runs until the
     /// last of the [`LANES`] pixels has ended; the others keep their normals.
     #[inline(never)]
-    pub(super) fn descend(
+    pub(crate) fn descend(
         &self,
         start: [Lanes; 3],
         mut here: LinearisedPixels,
@@ -298,7 +299,7 @@ impl<'a> Pixels<'a> {
 
 /// The objective of four pixels around their normals: its value, half its gradient, and the Gauss-Newton matrix (xx,
 /// xy, xz, yy, yz, zz).
-pub(super) struct LinearisedPixels {
+pub(crate) struct LinearisedPixels {
     objective: Lanes,
     pub(super) gradient: [Lanes; 3],
     pub(super) matrix: [Lanes; 6],
@@ -354,7 +355,7 @@ fn squared_distance(a: [Lanes; 3], b: [Lanes; 3]) -> Lanes {
     dot(off, off)
 }
 
-pub(super) fn normalise(vector: [Lanes; 3]) -> [Lanes; 3] {
+pub(crate) fn normalise(vector: [Lanes; 3]) -> [Lanes; 3] {
     let inverse = Lanes::splat(1.0) / dot(vector, vector).sqrt();
     [vector[0] * inverse, vector[1] * inverse, vector[2] * inverse]
 }

@@ -6,7 +6,8 @@
 //!
 //! Limits: a relief that ends before it turns away has no occluding contours and is not judged.
 
-use super::{Normals, Size};
+use crate::reason::Reason;
+use crate::view::{DepthView, Normals, Size};
 
 /// Distance, in pixels, at which pixels without depth are searched, because the normals of the last pixel are
 /// one-sided.
@@ -24,8 +25,14 @@ const FEWEST: usize = 12;
 /// Directions of the eight pixels that are checked for depth.
 const AROUND: [[isize; 2]; 8] = [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]];
 
+/// The reason to cap a verdict if most occluding contours of the depth map face inward. Mirrored, such a map has another
+/// pose that fits as well.
+pub fn hollow(depth: &DepthView) -> Option<Reason> {
+    is_hollow(depth.size, &depth.points.z, &depth.normals).then_some(Reason::Hollow)
+}
+
 /// Whether most occluding contours face inward. `depths` are NaN where missing.
-pub fn is_hollow(size: Size, depths: &[f32], normals: &Normals) -> bool {
+fn is_hollow(size: Size, depths: &[f32], normals: &Normals) -> bool {
     let (mut inward, mut outward) = (0_usize, 0_usize);
     for index in (0..size.len()).filter(|&index| normals.x[index].is_finite()) {
         let [x, y] = out(size, depths, index);
@@ -57,7 +64,7 @@ fn out(size: Size, depths: &[f32], index: usize) -> [f32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::{DepthMap, DepthSamples, DepthView};
+    use crate::view::{DepthMap, DepthSamples};
 
     const SIDE: usize = 40;
 

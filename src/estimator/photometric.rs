@@ -1,4 +1,5 @@
-//! Photometric registration as a stage of the loop: the normals it uses, its memory, and its last result.
+//! Photometric registration of a pair, for the finder, the registration stage and the check of the depth unit: the
+//! normals it uses, and its memory.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimator::gauge;
@@ -42,10 +43,6 @@ pub struct PhotometricRegistration {
     is_coarse: bool,
     /// An initial pose near which registrations are held, if a single albedo does not explain the image from there.
     near: Option<PosePrior>,
-    /// Where registrations of the finder's optimum ended; their spread adds to the sigmas.
-    ends: Vec<Similarity>,
-    /// The last registration.
-    found: Option<PhotometricReport>,
 }
 
 /// Third-order normals of the depth view, and the sigma of each in radians.
@@ -100,17 +97,14 @@ impl PhotometricRegistration {
         Self {
             photometric: Photometric::new(&sharp.problem(pair, is_scale_held(pair), None)),
             near: None,
-            ends: Vec::new(),
             is_coarse: sharp.noise > LARGEST_NOISE && pair.known_light().is_some(),
             sharp,
-            found: None,
         }
     }
 
     /// Holds the next registrations near an initial pose, or frees them.
-    pub fn keep_near(&mut self, prior: Option<PosePrior>) {
+    pub const fn keep_near(&mut self, prior: Option<PosePrior>) {
         self.near = prior;
-        self.ends.clear();
     }
 
     /// Whether registrations are held near an initial pose.
@@ -162,59 +156,29 @@ impl PhotometricRegistration {
         self.sharp.noise <= LARGEST_NOISE
     }
 
-    /// The last registration; `None` before the first.
-    pub const fn found(&self) -> Option<&PhotometricReport> {
-        self.found.as_ref()
+    /// The best pose near `start`.
+    pub fn register(&mut self, pair: &ViewPair, start: &Similarity) -> Result<PhotometricReport> {
+        self.register_anew(pair, start, &options(pair))
     }
 
-    /// Gives up the last registration.
-    pub fn take_found(&mut self) -> Option<PhotometricReport> {
-        self.found.take()
-    }
-
-    /// Adopts a registration made by the search.
-    pub fn adopt(&mut self, found: PhotometricReport) {
-        self.found = Some(found);
-    }
-
-    /// Whether the last registration ended in `pose`. t_z may have changed since, because it is a gauge.
-    pub fn ended_in(&self, pose: &Similarity) -> bool {
-        let free = |pose: &Similarity| (pose.scale, pose.rotation, pose.translation.xy());
-        self.found.as_ref().is_some_and(|found| !found.sampled && free(&found.pose) == free(pose))
-    }
-
-    /// Keeps where registrations of the optimum ended that the finder has chosen.
-    pub fn keep_ends(&mut self, ends: Vec<Similarity>) {
-        self.ends = ends;
-    }
-
-    /// The best pose near `start`. A registration that starts where the last one ended is not repeated: the measured
-    /// normals do not change, so neither would its end.
-    pub fn register(&mut self, pair: &ViewPair, start: &Similarity) -> Result<&PhotometricReport> {
-        let is_done = self.ended_in(start);
+    /// Registers all points again near `start`, after the registration `found`. One that starts where the last one ended
+    /// is not repeated: the measured normals do not change, so neither would its end. The spread of `ends` adds to the
+    /// sigmas.
+    pub fn register_again(
+        &mut self,
+        pair: &ViewPair,
+        found: &mut PhotometricReport,
+        start: &Similarity,
+        ends: &[Similarity],
+    ) -> Result<()> {
+        if ended_in(found, start) {
+            return Ok(());
+        }
         // A registration by a sample of the points ends so close that the sharp level is enough for all of them.
-        let first_level = match &self.found {
-            Some(found) if found.sampled => 0,
-            _ => options(pair).first_level,
-        };
-        let found = match self.found.take().filter(|_| is_done) {
-            Some(found) => found,
-            None => {
-                let mut found =
-                    self.register_anew(pair, start, &PhotometricOptions { first_level, ..options(pair) })?;
-                found.uncertainty.add_spread(&found.pose, &self.ends);
-                found
-            }
-        };
-        Ok(self.found.insert(found))
-    }
-
-    /// Registers all points, from the pose of a registration by a sample of them.
-    pub fn register_all(&mut self, pair: &ViewPair, sampled: PhotometricReport) -> Result<PhotometricReport> {
-        let pose = sampled.pose;
-        self.found = Some(sampled);
-        self.register(pair, &pose)?;
-        self.found.take().ok_or_else(collapsed)
+        let first_level = if found.sampled { 0 } else { options(pair).first_level };
+        *found = self.register_anew(pair, start, &PhotometricOptions { first_level, ..options(pair) })?;
+        found.uncertainty.add_spread(&found.pose, ends);
+        Ok(())
     }
 
     fn register_anew(
@@ -328,6 +292,12 @@ impl PhotometricRegistration {
         }
         self.photometric.step(&problem).map(|_| None)
     }
+}
+
+/// Whether a registration of all points ended in `pose`. t_z may have changed since, because it is a gauge.
+pub fn ended_in(found: &PhotometricReport, pose: &Similarity) -> bool {
+    let free = |pose: &Similarity| (pose.scale, pose.rotation, pose.translation.xy());
+    !found.sampled && free(&found.pose) == free(pose)
 }
 
 /// The error for an object that moved so far away or so close that only a few pixels are compared.

@@ -8,13 +8,13 @@
 
 use crate::diagnosis::{Alternative, Diagnosis};
 use crate::error::Result;
+use crate::estimator::finder::candidates::{Candidates, NEARBY, search};
+use crate::estimator::finder::local_optima::{Choice, LocalOptima, Origin, RegisteredCandidate};
+use crate::estimator::finder::silhouettes;
 use crate::estimator::pair::ViewPair;
+use crate::estimator::photometric::{Attempt, FIRST_LEVEL_NEAR, PhotometricRegistration};
 use crate::pose::{COARSEST_NEAR, ImageGrid, PhotometricReport, Search, SilhouetteReport, Similarity};
 
-use super::candidates::{Candidates, NEARBY, search};
-use super::local_optima::{Choice, LocalOptima, Origin, RegisteredCandidate};
-use super::photometric::{Attempt, FIRST_LEVEL_NEAR, PhotometricRegistration};
-use super::silhouettes;
 use super::trust_region::TrustRegion;
 
 /// Result of a slice.
@@ -74,10 +74,10 @@ impl Nearby {
     }
 
     /// Runs one slice.
-    pub fn advance(&mut self, pair: &ViewPair, colours: &mut PhotometricRegistration) -> Result<Progress> {
+    pub fn advance(&mut self, pair: &ViewPair, photometric: &mut PhotometricRegistration) -> Result<Progress> {
         match self.step {
             Step::Judge => {
-                self.judge(pair, colours);
+                self.judge(pair, photometric);
                 self.step = self.after_initial();
             }
             Step::FromInitial { level } => {
@@ -86,23 +86,25 @@ impl Nearby {
                     _ => self.after_initial(),
                 };
                 let initial = self.region.initial;
-                return Ok(self.register(pair, colours, &initial, level, next));
+                return Ok(self.register(pair, photometric, &initial, level, next));
             }
             Step::FromSilhouettes(start) => {
-                return Ok(self.register(pair, colours, &start, COARSEST_NEAR, Step::Shift));
+                return Ok(self.register(pair, photometric, &start, COARSEST_NEAR, Step::Shift));
             }
             Step::Shift => {
-                let mut search = search(pair, ImageGrid::new(&pair.image)?, colours)?;
+                let mut search = search(pair, ImageGrid::new(&pair.image)?, photometric)?;
                 self.step = search.shifted(&self.region.initial.rotation).map_or(Step::Search, Step::FromShifted);
                 self.search = Some(search);
             }
-            Step::FromShifted(start) => return Ok(self.register(pair, colours, &start, COARSEST_NEAR, Step::Search)),
+            Step::FromShifted(start) => {
+                return Ok(self.register(pair, photometric, &start, COARSEST_NEAR, Step::Search));
+            }
             Step::Search => {
                 let (Some(search), Some(optima)) = (self.search.take(), self.optima.take()) else {
                     return Ok(Progress::Explained(Choice::default()));
                 };
                 let candidates = Candidates::new(search, optima, NEARBY, false);
-                let candidates = if colours.is_kept_near() { candidates.near() } else { candidates };
+                let candidates = if photometric.is_kept_near() { candidates.near() } else { candidates };
                 return Ok(Progress::Unexplained(Box::new(candidates)));
             }
         }
@@ -115,16 +117,16 @@ impl Nearby {
     }
 
     /// Enters the initial pose and the result from it, and registers silhouettes.
-    fn judge(&mut self, pair: &ViewPair, colours: &mut PhotometricRegistration) {
+    fn judge(&mut self, pair: &ViewPair, photometric: &mut PhotometricRegistration) {
         let region = &self.region;
         let Some(optima) = &mut self.optima else { return };
-        if let Some(staying) = colours.judge(pair, &region.initial) {
+        if let Some(staying) = photometric.judge(pair, &region.initial) {
             optima.enter(Origin::Initial, RegisteredCandidate::of(staying));
         }
         if let Some(plain) = self.plain.take() {
             optima.enter(Origin::Nearby, RegisteredCandidate::of(plain));
         }
-        let found = region.prior(pair).and_then(|prior| silhouettes::near(pair, colours.normals(), prior));
+        let found = region.prior(pair).and_then(|prior| silhouettes::near(pair, photometric.normals(), prior));
         self.silhouettes = found.filter(|found| region.holds(pair, &found.pose)).map(Box::new);
     }
 
@@ -132,12 +134,12 @@ impl Nearby {
     fn register(
         &mut self,
         pair: &ViewPair,
-        colours: &mut PhotometricRegistration,
+        photometric: &mut PhotometricRegistration,
         start: &Similarity,
         first_level: usize,
         next: Step,
     ) -> Progress {
-        let attempt = colours.step_from(pair, start, first_level, !self.is_begun);
+        let attempt = photometric.step_from(pair, start, first_level, !self.is_begun);
         let Attempt::Ended(found) = attempt else {
             self.is_begun = true;
             return Progress::Ongoing;
@@ -181,19 +183,19 @@ mod tests {
     #[test]
     fn what_was_found_before_outlives_a_registration_that_fails_or_ends_outside_the_region() {
         let (pair, truth) = pair_beside_its_pose();
-        let mut colours = PhotometricRegistration::new(&pair);
+        let mut photometric = PhotometricRegistration::new(&pair);
         let out_of_sight = Similarity { translation: Vector3::new(1e4, 0.0, 0.0), ..truth };
         for (start, is_registered) in [(out_of_sight, false), (truth, true)] {
             let region = TrustRegion::of(&pair).unwrap();
             let initial = region.initial;
-            let end = colours.register_candidate(&pair, &start);
+            let end = photometric.register_candidate(&pair, &start);
             assert_eq!(end.is_some(), is_registered);
             assert!(end.is_none_or(|end| !region.holds(&pair, &end.pose)));
             let mut nearby = Nearby::new(&pair, region, None);
-            nearby.judge(&pair, &mut colours);
+            nearby.judge(&pair, &mut photometric);
             nearby.step = Step::FromSilhouettes(start);
             while matches!(nearby.step, Step::FromSilhouettes(_)) {
-                assert!(matches!(nearby.advance(&pair, &mut colours).unwrap(), Progress::Ongoing));
+                assert!(matches!(nearby.advance(&pair, &mut photometric).unwrap(), Progress::Ongoing));
             }
             assert_eq!(nearby.optima.and_then(|optima| optima.best()), Some(initial), "{is_registered}");
         }

@@ -8,9 +8,10 @@
 //! Limits: cast shadows are mistaken for albedo, so a round counts only if shading explains more of the remainder than
 //! before.
 
-use super::albedo::AlbedoStage;
-use crate::estimator::finder::{PhotometricRegistration, TrustRegion};
-use crate::estimator::pair::ViewPair;
+use super::finder::initial_pose::TrustRegion;
+use super::pair::ViewPair;
+use super::photometric::PhotometricRegistration;
+use super::stages::AlbedoStage;
 use crate::pose::{ContrastReport, Similarity, register_again};
 
 /// Largest number of rounds of pose and albedo. Set on photographs at 20 and 60 degrees (docs/lab/thresholds.md).
@@ -44,14 +45,14 @@ impl Contrasted {
     pub fn follow(
         &mut self,
         pair: &ViewPair,
-        colours: &PhotometricRegistration,
+        photometric: &PhotometricRegistration,
         albedo: &AlbedoStage,
         region: Option<&TrustRegion>,
     ) -> Option<Similarity> {
         let rounds = self.rounds.checked_sub(1)?;
         self.rounds = 0;
         let image = albedo.without_albedo(pair)?;
-        let (pose, objective) = register_again(&colours.contrast_problem(pair, &image), &self.report.pose)?;
+        let (pose, objective) = register_again(&photometric.contrast_problem(pair, &image), &self.report.pose)?;
         let is_allowed = region.is_none_or(|region| region.holds(pair, &pose));
         if !is_allowed || objective >= self.objective {
             return None;

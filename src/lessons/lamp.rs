@@ -1,5 +1,5 @@
 //! One distant lamp and a matte surface: Lambert's law, the changes of shape that leave the image the same, and the approximation of the
-//! law by harmonics of second order. For lessons (www/learn); the estimate itself uses [`Light`](super::Light).
+//! law by harmonics of second order. For lessons (www/learn); the estimate itself uses [`Light`](crate::Light).
 //!
 //! Limits: only attached shadows are included. Cast shadows, and light from other parts of the surface, are left out.
 

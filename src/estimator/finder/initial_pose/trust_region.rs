@@ -11,18 +11,13 @@ use crate::options::{Registration, Start};
 use crate::pose::{PosePrior, Similarity};
 use crate::view::extent;
 
-use super::silhouettes;
+use super::first_pose::{first_pose, shares_frame};
+use super::prior::prior;
 
 /// Default tolerance of the object's position, in object sizes (root mean square distance of its points from their
 /// centre). It is roughly the object's width. A turn by 8 degrees about a sensor at 0.8 m moves an object 0.2 m high by
 /// less than this, even a slim vase.
 const OBJECT_SIZES: f64 = 3.0;
-/// One sigma of the initial pose as a share of its tolerance: of the rotation, and of the object's position across and
-/// along the line of sight. For a mug at 0.8 m these are 3 degrees, 45 and 25 mm.
-const SIGMA_OF_DEGREES: f64 = 0.1;
-const SIGMA_ACROSS: f64 = 0.4;
-const SIGMA_ALONG: f64 = 0.22;
-
 /// An initial pose, and how far from it the answer may lie.
 #[derive(Clone)]
 pub struct TrustRegion {
@@ -45,10 +40,10 @@ impl TrustRegion {
         }
         let is_placed = match pair.options.start {
             Start::Search => return None,
-            Start::Identity => gauge::shares_frame(pair),
+            Start::Identity => shares_frame(pair),
             Start::Pose { translation, .. } => translation.is_some(),
         };
-        let initial = gauge::first_pose(pair);
+        let initial = first_pose(pair);
         let (middle, spread) = extent(pair.depth.points.valid());
         let tolerance = pair.options.start_tolerance;
         let own_width = || OBJECT_SIZES * initial.scale * spread;
@@ -70,12 +65,6 @@ impl TrustRegion {
 
     /// The prior that silhouettes use; `None` if the image does not depend on distances.
     pub fn prior(&self, pair: &ViewPair) -> Option<PosePrior> {
-        let degrees = SIGMA_OF_DEGREES * self.degrees;
-        if self.distance.is_infinite() {
-            return silhouettes::placed_by_middles(pair, self.initial, degrees);
-        }
-        let (across, along) = (SIGMA_ACROSS * self.distance, SIGMA_ALONG * self.distance);
-        let prior = PosePrior { pose: self.initial, rotation: degrees.to_radians(), across, along };
-        self.sees_depth.then_some(prior)
+        prior(pair, self.initial, self.degrees, Some(self.distance).filter(|distance| !distance.is_infinite()))
     }
 }

@@ -12,8 +12,9 @@
 use nalgebra::{Matrix2, SymmetricEigen, Vector2, Vector3};
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::light::Lamp;
 use crate::view::Size;
+
+use super::lamp::Lamp;
 
 /// Radius of the first ring, pixels, within which the picture's curvature is measured.
 const RING: f64 = 3.0;

@@ -5,12 +5,12 @@
 //! descent is held to unit length only by lambda_3; under a single colour the minima form a curve, of which some points
 //! are reported.
 
-use super::shading::{
-    LARGEST_N_Z, LinearisedPixels, MOST_STEPS, Pixels, ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights,
-    normalise,
-};
 use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, Mask};
+use crate::shape::{
+    LARGEST_N_Z, LinearisedPixels, MOST_DESCENT_STEPS, Pixels, ShadingProblem, ShadingReport, ShadingSolver,
+    ShadingWeights, normalise,
+};
 use crate::view::Normals;
 
 /// Two ends of descents closer than this, 3 degrees, are one minimum. A descent stops within a tenth of a degree of the
@@ -89,7 +89,7 @@ fn minima(pixel: &Pixels<'_>) -> Vec<Minimum> {
     let share = 1.0 / directions.len() as f32;
     let mut found: Vec<Minimum> = Vec::new();
     for block in directions.chunks_exact(LANES) {
-        let ends = normalise(descend(pixel, four(block), MOST_STEPS).0);
+        let ends = normalise(descend(pixel, four(block), MOST_DESCENT_STEPS).0);
         let objective = objective(pixel, ends).array();
         let ends = ends.map(Lanes::array);
         for lane in 0..LANES {
@@ -123,7 +123,7 @@ fn is_same(a: [f32; 3], b: [f32; 3]) -> bool {
 /// The descent stopped after one trial, two trials, and so on; rejected trials leave the normal in place.
 fn path(pixel: &Pixels<'_>, start: [f32; 3]) -> Vec<[f32; 3]> {
     let mut path = vec![start];
-    for steps in 1..=MOST_STEPS {
+    for steps in 1..=MOST_DESCENT_STEPS {
         let (normal, ended) = descend(pixel, four(&[start]), steps);
         let normal = normal.map(|axis| axis.array()[0]);
         if path.last() != Some(&normal) {

@@ -2,9 +2,8 @@
 //!
 //! Limits: an orthographic view. Without anchors, each unconnected part of the surface has mean zero.
 
-use super::gradients_to_heights::{IntegrationOptions, Integrator, Robustness};
-use super::normals_to_gradients::find_slopes;
 use crate::error::Result;
+use crate::shape::{IntegrationOptions, Integrator, Robustness, find_slopes};
 use crate::view::{Camera, Normals, Size};
 
 /// Depth in pixels of the surface with these normals in the least-squares sense, NaN where missing; `robust` cuts

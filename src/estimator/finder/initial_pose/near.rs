@@ -1,0 +1,92 @@
+//! The decision near an initial pose, from what the registrations near it and the other methods found.
+
+use super::nearby::Nearby;
+use super::trust_region::TrustRegion;
+use crate::error::Result;
+use crate::estimator::decision::{Decision, Method, Staying};
+use crate::estimator::finder::local_optima::Choice;
+use crate::estimator::finder::{local_contrast, silhouettes};
+use crate::estimator::gauge;
+use crate::estimator::pair::ViewPair;
+use crate::estimator::photometric::PhotometricRegistration;
+use crate::pose::{PhotometricReport, SilhouetteReport, Similarity};
+
+/// What is known about the surroundings of an initial pose.
+pub struct Near {
+    pub region: TrustRegion,
+    /// The pose registered from the initial one, if it leaves no more than the image's own noise.
+    noisy: Option<Similarity>,
+    /// The pose from silhouettes, if they constrain it.
+    pub silhouettes: Option<Box<SilhouetteReport>>,
+}
+
+impl Near {
+    /// The region of an initial pose, with the registration from that pose if it ended there.
+    pub fn new(pair: &ViewPair, region: TrustRegion, plain: Option<&PhotometricReport>) -> Self {
+        let noisy = plain.filter(|found| pair.residuals(found).is_noise()).map(|found| found.pose);
+        Self { region, noisy, silhouettes: None }
+    }
+
+    /// Whether to repeat the registrations near the initial pose: once, and only if a single albedo does not explain the image.
+    pub fn begins_again(&self, pair: &ViewPair, photometric: &PhotometricRegistration, choice: &Choice) -> bool {
+        let is_explained = choice.best.as_ref().is_some_and(|best| !silhouettes::has_varying_albedo(pair, best));
+        !photometric.is_kept_near() && !is_explained && self.region.prior(pair).is_some()
+    }
+
+    /// Repeats the registrations, held near the initial pose.
+    pub fn begin_again(&mut self, pair: &ViewPair, photometric: &mut PhotometricRegistration) -> Nearby {
+        photometric.keep_near(self.region.prior(pair));
+        Nearby::again(pair, self.region.clone(), self.silhouettes.take())
+    }
+
+    /// Takes the first pose within the trust region: from local contrast, the image or silhouettes. Otherwise keeps the initial pose.
+    pub fn conclude(
+        &mut self,
+        pair: &ViewPair,
+        photometric: &mut PhotometricRegistration,
+        Choice { best, rivals, ends }: Choice,
+        found: Option<Decision>,
+    ) -> Result<Decision> {
+        let region = &self.region;
+        let is_near = |found: &Decision| found.pose().is_some_and(|pose| region.holds(pair, pose));
+        if let Some(mut found) = found.filter(is_near) {
+            if let (Method::Contrast(contrast), Some(rivals)) = (&found.by, &mut found.rivals) {
+                // A pose that leaves only the image's own noise is a rival, however large the spatial covariance of its residuals.
+                local_contrast::add_rival(&contrast.report, rivals, self.noisy);
+            }
+            return Ok(found);
+        }
+        let silhouettes = self.silhouettes.take();
+        // If the albedo varies, a photometric pose counts less than silhouettes when it hardly fits or is less certain.
+        let is_trusted = |best: &PhotometricReport| match &silhouettes {
+            Some(_) if !silhouettes::has_varying_albedo(pair, best) => true,
+            Some(found) => {
+                !pair.residuals(best).is_unexplained()
+                    && best.uncertainty.largest_rotation() <= found.uncertainty.largest_rotation()
+            }
+            None => true,
+        };
+        let Some(mut best) = best.filter(|best| is_trusted(best)) else {
+            return Ok(Decision::of(silhouettes.map_or_else(|| stay(pair, photometric, region), Method::Silhouettes)));
+        };
+        // Candidates are registered on a sample of the points; all points follow.
+        let sampled = best.pose;
+        photometric.register_again(pair, &mut best, &sampled, &ends)?;
+        Ok(match region.holds(pair, &best.pose) {
+            true => Decision { by: Method::Photometric(best), rivals: Some(rivals), ends },
+            false => Decision::of(stay(pair, photometric, region)),
+        })
+    }
+}
+
+/// Keeps the initial pose.
+fn stay(pair: &ViewPair, photometric: &mut PhotometricRegistration, region: &TrustRegion) -> Method {
+    // An object shrunk to a few pixels fits any image, so its size must be plausible as well.
+    let of_size = Similarity { scale: gauge::unit_scale(pair), ..region.initial };
+    let explains = |found: Box<PhotometricReport>| found.noise < pair.image.log_spread();
+    let has_size = gauge::keeps_size(pair, &region.initial, &of_size);
+    Method::Initial(match has_size && photometric.judge(pair, &region.initial).is_some_and(explains) {
+        true => Staying::Explains,
+        false => Staying::ExplainsNothing,
+    })
+}
