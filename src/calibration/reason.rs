@@ -121,9 +121,10 @@ impl fmt::Display for CheckReason {
             Self::WithinTolerance(margin) => write!(f, "Its error is {margin}; {}.", margin.limit()),
             Self::NothingAgainst { margin, shown } => write!(
                 f,
-                "Nothing contradicts it, and this scene shows errors beyond {} px; its error is {margin}; {}.",
+                "Nothing contradicts it, and this scene shows errors beyond {} px. Its error is {margin}; the interval ends above \
+                 the limit of {} px because it includes the uncertainty of the estimate.",
                 Fixed(*shown, 1),
-                margin.limit()
+                Fixed(margin.tolerance, 1)
             ),
             Self::OffTarget { margin, offset } => write!(f, "Off by about {offset}: {margin}; {}.", margin.limit()),
             Self::Misread { reading, margin } => {

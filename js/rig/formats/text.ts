@@ -88,9 +88,19 @@ async function search(value: unknown, format: string, text: string): Promise<Rea
   return found.cameras.length + found.poses.length > 0 ? { ...found, format } : undefined;
 }
 
+/** Fewest numbers of a camera: a focal length and a centre. */
+const FEWEST_NUMBERS = 3;
+const numbersIn = (value: unknown): number =>
+  typeof value === "object" && value !== null
+    ? Object.values(value).reduce((sum: number, each) => sum + numbersIn(each), 0)
+    : Number(typeof value === "number");
+
 function nothingIn(value: unknown, format: string): BimodalError {
   const isText = (each: unknown) => typeof each !== "object" || each === null;
-  if (isText(value) || (Array.isArray(value) && value.every(isText))) return badFile("it is text in an unknown format");
+  // Prose with colons or dashes is valid YAML.
+  const isProse = format === "YAML" && numbersIn(value) < FEWEST_NUMBERS;
+  if (isText(value) || (Array.isArray(value) && value.every(isText)) || isProse)
+    return badFile("it is text in an unknown format");
   return badFile(`it is ${format}, but holds ${NEITHER} by a known name`);
 }
 
