@@ -128,9 +128,7 @@ test("as many alternatives can be chosen as the words count", async ({ lab, page
   await expect(page.locator("#rivals").getByRole("button", { name: /^alternative, / })).toHaveCount(5);
   // The errors of the best pose and of the alternative stand side by side, with the same decimals.
   await page.getByRole("button", { name: "alternative, 10° away" }).click();
-  await expect(page.locator("#pose-error")).toHaveText(
-    /^\d+\.\d\d° from the true rotation \(best pose: \d+\.\d\d°\)$/,
-  );
+  await expect(page.locator("#pose-error")).toHaveText(/^\d+\.\d\d° from the true rotation \(best pose: \d+\.\d\d°\)$/);
 });
 
 test("a pose that is right although the run does not trust it is said to be right", async ({ lab, page }) => {

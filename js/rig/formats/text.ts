@@ -90,17 +90,21 @@ async function search(value: unknown, format: string, text: string): Promise<Rea
 
 /** Fewest numbers of a camera: a focal length and a centre. */
 const FEWEST_NUMBERS = 3;
+const isText = (value: unknown): boolean => typeof value !== "object" || value === null;
 const numbersIn = (value: unknown): number =>
-  typeof value === "object" && value !== null
-    ? Object.values(value).reduce((sum: number, each) => sum + numbersIn(each), 0)
-    : Number(typeof value === "number");
+  String(value)
+    .split(/[\s,;]+/)
+    .filter((word) => word !== "" && Number.isFinite(Number(word))).length;
+
+/** Whether documents of YAML are notes: lines of text, which may have colons or dashes. */
+function areNotes(documents: readonly unknown[]): boolean {
+  const lines = documents.flatMap((each) => (isText(each) ? [each] : Object.values(each as object)));
+  return lines.every(isText) && lines.reduce((sum: number, line) => sum + numbersIn(line), 0) < FEWEST_NUMBERS;
+}
 
 function nothingIn(value: unknown, format: string): BimodalError {
-  const isText = (each: unknown) => typeof each !== "object" || each === null;
-  // Prose with colons or dashes is valid YAML.
-  const isProse = format === "YAML" && numbersIn(value) < FEWEST_NUMBERS;
-  if (isText(value) || (Array.isArray(value) && value.every(isText)) || isProse)
-    return badFile("it is text in an unknown format");
+  const all = Array.isArray(value) ? value : [value];
+  if (all.every(isText) || (format === "YAML" && areNotes(all))) return badFile("it is text in an unknown format");
   return badFile(`it is ${format}, but holds ${NEITHER} by a known name`);
 }
 
