@@ -44,6 +44,9 @@ test("no advice is a larger image alone, which a run scales down to the depth ma
   );
 });
 
+test("where larger may mean nearer, the Lab's advice names the choice beside the unit", () =>
+  assert.match(TABLE.runs.hollow.lab, /larger numbers .* mean nearer.*Settings, Depth camera, Numbers/));
+
 test("errors of the command line and of Python have a row", () => {
   const given = (pattern, paths) =>
     paths.flatMap((path) => [...source(path).matchAll(pattern)].map(([, code]) => code));

@@ -29,7 +29,12 @@ test("a stage is the whole search, and a step the whole first iteration", async 
   await page.locator("#pace").selectOption({ label: "fastest" });
   await page.getByRole("button", { name: "Play", exact: true }).click();
   await lab.reaches("converged");
-  // The map is that of the whole search, however the run was advanced.
+  // The map is that of the whole search, however the run was advanced, also if it was only played.
+  await expect(page.locator(words)).toHaveText(searched ?? "");
+  await page.getByRole("button", { name: "Reset", exact: true }).click();
+  await lab.reaches("ready");
+  await page.getByRole("button", { name: "Play", exact: true }).click();
+  await lab.reaches("converged");
   await expect(page.locator(words)).toHaveText(searched ?? "");
   expect(lab.complaints).toEqual([]);
 });
@@ -270,7 +275,9 @@ test("the card of a pixel covers neither the status nor the buttons at the top",
 test("the pose has an explanation beside its title", async ({ lab, page }) => {
   await lab.open("size=32");
   await page.getByRole("button", { name: 'What is "Pose"?' }).click();
-  await expect(page.locator("#explanation")).toContainText("does not determine the translation along z");
+  const said = page.locator("#explanation");
+  await expect(said).toContainText("does not determine the translation along z");
+  await expect(said).toContainText("even a depth map that is only rotated about the object has a translation");
 });
 
 test("with forced colours the current place, a pressed example and the legend's dots are still marked", async ({
