@@ -46,7 +46,7 @@ interface Elsewhere {
   open(hash: string): void;
   leave(): void;
   recolour(): void;
-  download(): void;
+  download(): void | Promise<void>;
 }
 type OtherPlace = Exclude<Place, "lab">;
 
@@ -89,7 +89,8 @@ button("reset", reset);
 button("undo", undo);
 button("redo", redo);
 button("defaults", () => store.resetToDefaults());
-button("export", () => {
+button("export", () => void exportResults());
+async function exportResults(): Promise<void> {
   const place = placeOf(location.hash);
   let isSaved = false;
   const note = (event: Event) => {
@@ -97,14 +98,14 @@ button("export", () => {
     say("export", phrase("saved", "Saved"));
     if (event instanceof CustomEvent) report(phrase("saved.as", "Saved {what}.", { what: String(event.detail) }));
   };
-  saves.addEventListener("saved", note, { once: true });
-  if (place === "lab") lab.download();
-  else others[place]?.download();
-  // A check reports by itself what it lacks, and reads its files first.
-  if (isSaved || place === "rig") return;
-  saves.removeEventListener("saved", note);
-  say("export", phrase("export.nothing", "Nothing to export"));
-});
+  saves.addEventListener("saved", note);
+  try {
+    await (place === "lab" ? lab : others[place])?.download();
+  } finally {
+    saves.removeEventListener("saved", note);
+  }
+  if (!isSaved) say("export", phrase("export.nothing", "Nothing to export"));
+}
 button("help-button", openHelp);
 button("link", () => void copyLink());
 themeToggle(byId("theme", HTMLButtonElement), () => {

@@ -135,7 +135,7 @@ fn is_there(value: f64) -> bool {
 }
 
 fn metres_text(value: f64) -> String {
-    if !(0.01..1000.0).contains(&value) { precise(value, 3) } else { fixed(value, 2) }
+    if value < 0.01 { precise(value, 3) } else { fixed(value, if value < 1000.0 { 2 } else { 0 }) }
 }
 
 /// Describes any depth map, and adds the warnings about it.

@@ -37,7 +37,7 @@ export const nameOf = (metres: number): string =>
 
 export const isThere = (value: number): boolean => value > 0 && value < 1e12;
 export const metresText = (value: number): string =>
-  value < 0.01 || value >= 1000 ? value.toPrecision(3) : value.toFixed(2);
+  value < 0.01 ? value.toPrecision(3) : value.toFixed(value < 1000 ? 2 : 0);
 
 /** Largest number of values in a sample; quantiles need no more. */
 const SAMPLE = 65_536;

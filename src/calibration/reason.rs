@@ -121,9 +121,10 @@ impl fmt::Display for CheckReason {
             Self::WithinTolerance(margin) => write!(f, "Its error is {margin}; {}.", margin.limit()),
             Self::NothingAgainst { margin, shown } => write!(
                 f,
-                "Nothing contradicts it, and this scene shows errors beyond {} px; its error is {margin}; {}.",
+                "Nothing contradicts it, and this scene shows errors beyond {} px. Its error is {margin}; the interval ends above \
+                 the limit of {} px because it includes the uncertainty of the estimate.",
                 Fixed(*shown, 1),
-                margin.limit()
+                Fixed(margin.tolerance, 1)
             ),
             Self::OffTarget { margin, offset } => write!(f, "Off by about {offset}: {margin}; {}.", margin.limit()),
             Self::Misread { reading, margin } => {
@@ -147,15 +148,11 @@ impl fmt::Display for CheckReason {
             ),
             Self::Unconstrained { margin, weakest } => write!(
                 f,
-                "This scene hardly constrains {weakest}, so the error is too uncertain to decide: {margin}; the limit is {} px.",
-                Fixed(margin.tolerance, 1)
+                "This scene hardly constrains {weakest}, so the error is too uncertain to decide: {margin}; {}.",
+                margin.limit()
             ),
             Self::TooClose(margin) => {
-                write!(
-                    f,
-                    "Its error is too uncertain to decide: {margin}; the limit is {} px.",
-                    Fixed(margin.tolerance, 1)
-                )
+                write!(f, "Its error is too uncertain to decide: {margin}; {}.", margin.limit())
             }
             Self::NoPoseOnImage => f.write_str("No pose puts its points onto the image."),
             Self::LittleOverlap { percent } => write!(
@@ -357,6 +354,17 @@ mod tests {
             CheckReason::Doubtful { warning: Box::new(warning), reason: Box::new(CheckReason::NoPoseOnImage) };
         assert_eq!(doubtful.code(), "doubtful");
         assert!(doubtful.to_string().starts_with("Looks right, see warnings: frame 1: "), "{doubtful}");
+    }
+
+    #[test]
+    fn an_interval_that_ends_above_the_limit_is_explained() {
+        let margin = Margin { health: Health { pixels: 2.7, interval: [1.0, 4.8] }, tolerance: 3.5 };
+        let reason = CheckReason::NothingAgainst { margin, shown: 3.1 };
+        assert_eq!(
+            reason.to_string(),
+            "Nothing contradicts it, and this scene shows errors beyond 3.1 px. Its error is 2.7 px at the scene's depth (95 %: \
+             1.0 to 4.8); the interval ends above the limit of 3.5 px because it includes the uncertainty of the estimate."
+        );
     }
 
     #[cfg(feature = "serde")]

@@ -34,6 +34,19 @@ for (const [group, path, name] of [
   test(`${name} is the table's ${group}`, () =>
     assert.deepEqual(union(path, name).sort(), Object.keys(TABLE[group]).sort()));
 
+test("no advice is a larger image alone, which a run scales down to the depth map", () => {
+  const advice = Object.values(TABLE.runs).flatMap(({ remedy, lab = "" }) => [remedy, lab]);
+  const larger = advice.filter((words) => /(larger|finer) image/.test(words));
+  assert.ok(larger.length >= 2, String(larger));
+  assert.deepEqual(
+    larger.filter((words) => !/image (and|together with a larger) depth map/.test(words)),
+    [],
+  );
+});
+
+test("where larger may mean nearer, the Lab's advice names the choice beside the unit", () =>
+  assert.match(TABLE.runs.hollow.lab, /larger numbers .* mean nearer.*Settings, Depth camera, Numbers/));
+
 test("errors of the command line and of Python have a row", () => {
   const given = (pattern, paths) =>
     paths.flatMap((path) => [...source(path).matchAll(pattern)].map(([, code]) => code));

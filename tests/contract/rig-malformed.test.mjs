@@ -52,6 +52,9 @@ const FILES = [
   ["a.heic", new Uint8Array([0, 0, 0, 24, ...text("ftypheic"), 0, 1]), /HEIC/],
   ["page.html", text("<!doctype html><html><body>404</body></html>"), /document type/],
   ["readme.txt", text("Some words: of no: use"), /an unknown format/],
+  ["notes.txt", text("Date: Monday\nPlace: the lab\nFrames: 12\n"), /: it is text in an unknown format$/],
+  ["list.txt", text("- bring the board\n- 2 lamps\n"), /: it is text in an unknown format$/],
+  ["settings.yaml", text("exposure: 5\ngain: 2\ndepths: [1, 2]\n"), /it is YAML, but holds neither a camera/],
 
   [
     "signature.png",

@@ -1,7 +1,9 @@
 // Units of translations: stated in comments, or not at all, where a length that is long for a rig has a warning.
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
+import { readRigFile } from "../../pkg/rig.js";
 import { close, codes, only, read, rotation } from "./rig-support.mjs";
+import { npy } from "./support.mjs";
 
 const yaml = (comment, t) => `${comment}\nR: [${rotation}]\nt: [${t}]\n`;
 const shift = (reading) => only(reading.poses).pose.translation;
@@ -61,4 +63,14 @@ describe("a long translation without a unit", () => {
     const reading = await read("rig.json", JSON.stringify({ unit: "m", R: rotation, t: [2, 0, 0] }));
     assert.deepEqual(codes(reading), []);
   });
+});
+
+test("depths of a thousand metres and more are written in full", async () => {
+  const data = Float32Array.from({ length: 64 }, (_, i) => 1389.6 + (5300 * i) / 63);
+  const { says } = await readRigFile(
+    { name: "far.npy", bytes: npy({ descr: "<f4", shape: [8, 8], data }) },
+    { as: "depth", unit: 1 },
+  );
+  assert.match(says, /, 1390 to 6690 m/);
+  assert.doesNotMatch(says, /e\+/);
 });

@@ -4,6 +4,8 @@ import type { Page } from "@playwright/test";
 import type { StepReport } from "../../pkg/index.js";
 import { expect, test, type Lab } from "./lab";
 import { open } from "./figure";
+import { answerChecks } from "./rig";
+import { heading, openExample, run } from "./rigsteps";
 
 const words = "#score-words";
 
@@ -27,7 +29,12 @@ test("a stage is the whole search, and a step the whole first iteration", async 
   await page.locator("#pace").selectOption({ label: "fastest" });
   await page.getByRole("button", { name: "Play", exact: true }).click();
   await lab.reaches("converged");
-  // The map is that of the whole search, however the run was advanced.
+  // The map is that of the whole search, however the run was advanced, also if it was only played.
+  await expect(page.locator(words)).toHaveText(searched ?? "");
+  await page.getByRole("button", { name: "Reset", exact: true }).click();
+  await lab.reaches("ready");
+  await page.getByRole("button", { name: "Play", exact: true }).click();
+  await lab.reaches("converged");
   await expect(page.locator(words)).toHaveText(searched ?? "");
   expect(lab.complaints).toEqual([]);
 });
@@ -93,21 +100,40 @@ async function playThrough(lab: Lab): Promise<void> {
   await lab.page.getByRole("button", { name: "Play", exact: true }).click();
 }
 
+/** The report's pose, rotated about z by each of these angles, as its alternatives. */
+async function turnRivals(page: Page, angles: string): Promise<void> {
+  await changeReports(
+    page,
+    Object.assign(() => {}, {
+      toString: () => `(report) => {
+        const [a, b, c, d, e, f, ...rest] = report.pose.rotation;
+        report.rivals = [${angles}].map((degrees) => {
+          const [cos, sin] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
+          const rows = [cos * a - sin * d, cos * b - sin * e, cos * c - sin * f, sin * a + cos * d, sin * b + cos * e];
+          return { ...report.pose, rotation: [...rows, sin * c + cos * f, ...rest] };
+        });
+      }`,
+    }),
+  );
+}
+
 test("a pose that is nearly the best one is no alternative to it", async ({ lab, page }) => {
-  await changeReports(page, (report) => {
-    const [a = 0, b = 0, c = 0, d = 0, e = 0, f = 0, ...rest] = report.pose.rotation;
-    report.rivals = [1, 4, 40].map((degrees) => {
-      const [cos, sin] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
-      const rows = [cos * a - sin * d, cos * b - sin * e, cos * c - sin * f, sin * a + cos * d, sin * b + cos * e];
-      return { ...report.pose, rotation: [...rows, sin * c + cos * f, ...rest] };
-    });
-  });
+  await turnRivals(page, "1, 4, 40");
   await playThrough(lab);
   await expect(page.locator("#rivals").getByRole("button")).toHaveText([
     "best pose",
     "alternative, 4° away",
     "alternative, 40° away",
   ]);
+});
+
+test("as many alternatives can be chosen as the words count", async ({ lab, page }) => {
+  await turnRivals(page, "10, 20, 30, 40, 50");
+  await playThrough(lab);
+  await expect(page.locator("#rivals").getByRole("button", { name: /^alternative, / })).toHaveCount(5);
+  // The errors of the best pose and of the alternative stand side by side, with the same decimals.
+  await page.getByRole("button", { name: "alternative, 10° away" }).click();
+  await expect(page.locator("#pose-error")).toHaveText(/^\d+\.\d\d° from the true rotation \(best pose: \d+\.\d\d°\)$/);
 });
 
 test("a pose that is right although the run does not trust it is said to be right", async ({ lab, page }) => {
@@ -129,6 +155,8 @@ test("the legend of the surfaces is that of their colours", async ({ lab, page }
   await expect(legend.getByText("depth map in the estimated pose")).toBeHidden();
   await page.locator("#clouds-texture").selectOption("residual");
   await expect(legend.locator(".bar")).toBeVisible();
+  await page.locator("#clouds-texture").selectOption("picture");
+  await expect(legend).toContainText("colours of the picture; grey: depth map");
   await page.locator("#clouds-texture").selectOption("view");
   await expect(legend.locator(".bar")).toHaveCount(0);
   await expect(legend.getByText("depth map in the estimated pose")).toBeVisible();
@@ -161,6 +189,32 @@ test("Export says that it has saved, or that there is nothing", async ({ lab, pa
   await page.getByRole("link", { name: "Exercises", exact: true }).click();
   await exporting.click();
   await expect(exporting).toHaveText("Nothing to export");
+});
+
+test("Export says on an empty rig that there is nothing, and what is saved later is not its own", async ({
+  lab,
+  page,
+}) => {
+  await answerChecks(page, "off");
+  await page.goto("./#rig");
+  const exporting = page.locator("#export");
+  await expect(heading(page, "1. Files and cameras")).toBeVisible();
+  await exporting.click();
+  await expect(exporting).toHaveText("Nothing to export");
+  await expect(exporting).toHaveText("Export");
+  await openExample(page);
+  await run(page);
+  const saved = page.waitForEvent("download");
+  await page.getByRole("button", { name: "Save numbers (JSON)" }).click();
+  await saved;
+  await expect(exporting).toHaveText("Export");
+  await expect(page.locator("#exported")).toBeEmpty();
+  // With a verdict the same button saves it.
+  const exported = page.waitForEvent("download");
+  await exporting.click();
+  await exported;
+  await expect(exporting).toHaveText("Saved");
+  expect(lab.complaints).toEqual([]);
 });
 
 test("the address has what is shown, and nothing that was not followed", async ({ lab, page }) => {
@@ -221,5 +275,28 @@ test("the card of a pixel covers neither the status nor the buttons at the top",
 test("the pose has an explanation beside its title", async ({ lab, page }) => {
   await lab.open("size=32");
   await page.getByRole("button", { name: 'What is "Pose"?' }).click();
-  await expect(page.locator("#explanation")).toContainText("does not determine the translation along z");
+  const said = page.locator("#explanation");
+  await expect(said).toContainText("does not determine the translation along z");
+  await expect(said).toContainText("even a depth map that is only rotated about the object has a translation");
+});
+
+test("with forced colours the current place, a pressed example and the legend's dots are still marked", async ({
+  lab,
+  page,
+}) => {
+  await page.emulateMedia({ forcedColors: "active" });
+  await lab.visit("size=32");
+  await page.getByRole("button", { name: "Noise", exact: true }).click();
+  await expect(page.locator("#presets button[aria-pressed=true]")).toHaveText("Noise");
+  await page.locator("#play").focus();
+  const outline = (selector: string) =>
+    page.locator(selector).evaluate((element) => getComputedStyle(element).outlineStyle);
+  expect(await outline("#presets button[aria-pressed=true]")).toBe("solid");
+  expect(await outline(".top nav a[aria-current]")).toBe("solid");
+  expect(await outline("#presets button[aria-pressed=false] >> nth=0")).toBe("none");
+  const dots = await page
+    .locator("#clouds-legend .key")
+    .evaluateAll((keys) => keys.map((key) => getComputedStyle(key, "::before").backgroundColor));
+  const behind = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  expect(new Set([...dots, behind]).size).toBe(3);
 });

@@ -331,12 +331,13 @@ test("13: the refined depth is better than the measured one, as far as the pictu
   expect(lab.complaints).toEqual([]);
 });
 
-test("14: paint goes into the albedo, a shadow into what is left over", async ({ lab, page }) => {
+test("14: paint goes into the albedo, and so does nearly all of a shadow", async ({ lab, page }) => {
   await open(page, "at=paint&paint=0.8");
   expect(await number(page, "likeness")).toBeGreaterThan(0.7);
   const lit = await number(page, "lit");
   await slide(page, "paint", 0);
   await slide(page, "shadow", 0.9);
+  expect(await number(page, "taken")).toBeGreaterThan(80);
   expect(await number(page, "shaded")).toBeGreaterThan(3 * lit);
   expect(await number(page, "shaded")).toBeGreaterThan(3 * (await number(page, "lit")));
   expect(lab.complaints).toEqual([]);

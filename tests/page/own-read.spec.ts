@@ -108,6 +108,51 @@ test("a mask of 16 bits is a mask, and labels are refused in words", async ({ la
   );
 });
 
+/** The ball's depths as floats in metres. */
+function floatsNpy(name: string): Upload {
+  const said = `{'descr': '<f4', 'fortran_order': False, 'shape': (${SIDE}, ${SIDE}), }`;
+  const head = Buffer.from(`\x93NUMPY\x01\x00\x76\x00${said.padEnd(117, " ")}\n`, "latin1");
+  const data = Float32Array.from({ length: SIDE * SIDE }, (_, i) =>
+    radius(i) < 20 ? 1 - 0.01 * Math.sqrt(400 - radius(i) ** 2) : 0,
+  );
+  return { name, mimeType: "application/octet-stream", buffer: Buffer.concat([head, Buffer.from(data.buffer)]) };
+}
+
+for (const order of ["together", "the photograph first", "the depth map first"])
+  test(`a grey photograph of 16 bits is the colour image beside depths in floats: ${order}`, async ({ lab, page }) => {
+    const photo = image("1.png", 1, 16, (i) => (radius(i) < 20 ? 9000 + ((i * 7919) % 40_000) : 0));
+    const floats = floatsNpy("2.npy");
+    await own(lab);
+    if (order === "together") await drop(page, "body", [floats, photo]);
+    else {
+      const [first, second] = order === "the photograph first" ? [photo, floats] : [floats, photo];
+      await drop(page, "body", [first]);
+      await expect(slot(lab, 1)).toContainText(first.name);
+      await drop(page, "body", [second]);
+    }
+    await expect(slot(lab, 0)).toContainText("1.png");
+    await expect(slot(lab, 1)).toContainText("2.npy");
+    await expect(remarks(lab)).toContainText("1.png is grey and has the bits of a depth map");
+    await lab.reaches("ready");
+    await expect(page.locator(".offer")).toBeEmpty();
+  });
+
+test("in the slot for masks a mask of 16 bits is not said to be a depth map", async ({ lab, page }) => {
+  await own(lab);
+  await drop(page, "body", [colourPng(), depthPng()]);
+  await put(
+    lab,
+    "Colour mask",
+    image("m.png", 1, 16, (i) => (radius(i) < 20 ? 65535 : 0)),
+  );
+  await expect(slot(lab, 2)).toContainText("16-bit grey, a mask of");
+  await lab.reaches("ready");
+  await expect(page.locator(".offer")).toBeEmpty();
+  // The same slot objects to a depth map.
+  await put(lab, "Colour mask", depthPng("depths.png"));
+  await expect(page.locator(".offer")).toContainText("depths.png looks like a depth map but is in the slot");
+});
+
 test("intrinsics of another picture size are scaled and named; of another aspect they are named and left out", async ({
   lab,
   page,

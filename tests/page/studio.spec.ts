@@ -278,7 +278,7 @@ test("a pose with a rival says so, and the rival can be seen and chosen", LONG, 
   await expect(rivals.getByRole("button", { name: "Restart from here" })).toBeVisible();
   // Verdict and light belong to the pose that was found, and their words state it.
   await expect(page.locator("#status")).toHaveText(/^best pose: ambiguous, /);
-  await expect(page.locator("#pose-error")).toHaveText(/° from the true rotation \(best pose: \d\.\d°\)/);
+  await expect(page.locator("#pose-error")).toHaveText(/° from the true rotation \(best pose: \d\.\d\d°\)/);
   await expect(page.locator("#light figcaption").first()).toHaveText("best pose");
   expect(await places()).toEqual(before);
   await rivals.getByRole("button", { name: "best pose" }).click();

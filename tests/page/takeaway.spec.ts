@@ -154,6 +154,17 @@ test("any picture of the page, the clouds and the curves among them", LONG, asyn
   }
 });
 
+test("the report of a good run has no advice about the page's controls", async ({ lab, page }) => {
+  await lab.open("size=32");
+  await page.locator("#pace").selectOption({ label: "fastest" });
+  await page.getByRole("button", { name: "Play", exact: true }).click();
+  await lab.reaches("converged");
+  await expect(page.locator("#next")).toContainText("Rotate the surfaces");
+  const html = (await handed(lab, "Full report, HTML")).toString();
+  expect(html).toContain("The true pose was found.");
+  expect(html).not.toMatch(/Rotate the surfaces|Too hard/);
+});
+
 test("the report opens by itself, offline, with the numbers, options, pictures and hashes of the run", async ({
   lab,
   page,

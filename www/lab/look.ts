@@ -20,6 +20,9 @@ export interface Look {
   warnings: string[];
   /** Whether a picture is stored without colours. */
   isGrey?: boolean;
+  /** Whether the numbers of a depth map are stored as integers, and whether they vary from pixel to pixel as those of an image do. */
+  isWhole?: boolean;
+  isImageLike?: boolean;
   /** Whether it is a depth map whose name says that larger numbers are nearer. */
   isInverse?: boolean;
   width?: number;
@@ -60,6 +63,23 @@ export function lookAt(file: File): Promise<Look> {
   return known;
 }
 
+/** A file with what it was recognised as. */
+export interface Seen {
+  file: File;
+  look: Look;
+}
+
+export const isDepthName = (name: string): boolean => /depth|dpt|\bir\b|infra|tof/i.test(name.replace(/[_.-]+/g, " "));
+
+/** Of two grey pictures with the bits of a depth map, the one whose values are those of an image, or are integers beside the other's floats. */
+export function imageAmong(pair: readonly [Seen, Seen]): Seen | undefined {
+  const only = (has: (look: Look) => boolean | undefined): Seen | undefined => {
+    const [one, ...others] = pair.filter(({ look }) => has(look));
+    return one && others.length === 0 && !isDepthName(one.file.name) ? one : undefined;
+  };
+  return only(({ isImageLike }) => isImageLike) ?? only(({ isWhole }) => isWhole);
+}
+
 /** Forgets the pixels of all files but these. */
 export function release(files: Files): void {
   const needed = new Set(Object.values(files));
@@ -77,7 +97,7 @@ type Reading = Omit<Calls["read"]["ask"], "file" | "name" | "blob">;
 
 async function seen(file: File, number: number, how: Reading): Promise<Look> {
   const read = await session.call("read", { file: number, name: file.name, blob: file, ...how });
-  const { kind, width, height, organised = false, cameras, unit } = read;
+  const { kind, width, height, organised = false, isWhole = false, cameras, unit } = read;
   const isPicture = kind === "colour" || kind === "depth" || kind === "mask";
   const picture = isPicture ? await session.call("picture", { file: number, width: PREVIEW }) : undefined;
   const warnings = read.warnings.filter(({ code }) => kind !== "depth" || !SETTLED.has(code));
@@ -86,6 +106,8 @@ async function seen(file: File, number: number, how: Reading): Promise<Look> {
     says: inWords(read),
     warnings: warnings.map(({ message }) => message),
     isGrey: read.isGrey ?? false,
+    isWhole,
+    isImageLike: kind === "depth" && read.warnings.some(({ code }) => code === "files-swapped"),
     organised,
     cameras,
     ...(width && height ? { width, height } : {}),

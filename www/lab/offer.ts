@@ -1,6 +1,6 @@
 /** Files that seem to be in the wrong slot, and the change that would correct it. */
 
-import { type Look, lookAt } from "./look";
+import { type Look, imageAmong, lookAt } from "./look";
 import type { Files, Slot } from "./storage";
 
 /** A proposed change of slots. */
@@ -46,9 +46,18 @@ export async function offerFor(files: Files): Promise<Offer | undefined> {
       slots: { ...files, colour: files.depth, depth: files.colour },
     };
   }
+  const isImage =
+    files.colour !== undefined &&
+    files.depth !== undefined &&
+    colour !== undefined &&
+    depth?.kind === "depth" &&
+    imageAmong([
+      { file: files.colour, look: colour },
+      { file: files.depth, look: depth },
+    ])?.look === colour;
   // A mask may have soft edges, and a coarse depth map may have 8 bits, so neither is evidence of a wrong slot.
   const wrong: [Slot, Look | undefined, boolean][] = [
-    ["colour", colour, seems(colour, "depth") || seems(colour, "mask")],
+    ["colour", colour, (seems(colour, "depth") && !isImage) || seems(colour, "mask")],
     ["depth", depth, (seems(depth, "colour") && !isCoarse) || seems(depth, "mask")],
     ["colourMask", colourMask, seems(colourMask, "depth") || colourMask?.isGrey === false],
     ["depthMask", depthMask, seems(depthMask, "depth") || depthMask?.isGrey === false],

@@ -63,8 +63,8 @@ export class OwnFiles {
     if (run) return this.#hooks.onRun(run);
     this.#hooks.onLooking(files.map(({ name }) => name).join(", "));
     const { sorted } = await import("./sorted");
-    const { slots, fields, cameras, remarks } = await sorted(files, this.intake.files, this.#hooks.settings());
-    const isPair = slots.has("colour") && slots.has("depth");
+    const there = this.intake.files;
+    const { slots, isPair, fields, cameras, remarks } = await sorted(files, there, this.#hooks.settings());
     const placed = Object.fromEntries(slots);
     this.intake.remarks("files", remarks);
     if (cameras.length > 0) {

@@ -94,9 +94,9 @@ export class PoseTable {
       this.#error.dataset.degrees = String(degrees);
       // The error that the verdict refers to, beside the error of the alternative pose.
       const before = rival
-        ? ` (best pose: ${decimals(angleBetween(report.pose.rotation, truth.rotation), 1)}°)`
+        ? ` (best pose: ${decimals(angleBetween(report.pose.rotation, truth.rotation), 2)}°)`
         : start
-          ? ` (${decimals(angleBetween(start.rotation, truth.rotation), 1)}° at the start)`
+          ? ` (${decimals(angleBetween(start.rotation, truth.rotation), 2)}° at the start)`
           : "";
       this.#error.replaceChildren(make("strong", {}, `${decimals(degrees, 2)}°`), ` from the true rotation${before}`);
       // The true pose decides this, so that the text does not change during the search.

@@ -12,8 +12,6 @@ export interface RivalHooks {
   onStart(pose: Pose): void;
 }
 
-/** More rivals could not be distinguished on the screen. */
-const MOST = 4;
 /** Another pose counts as the same pose within this angle: two sigmas of the least certain pose that still converges. */
 const APART = 2 * (OPTIONS.tolerance.default ?? 0);
 
@@ -34,7 +32,7 @@ export class Rivals {
 
   show({ rivals = [], pose, status }: StepReport): void {
     const others = rivals.filter(({ rotation }) => angleBetween(rotation, pose.rotation) > APART);
-    const poses = status === "running" ? [] : others.slice(0, MOST);
+    const poses = status === "running" ? [] : others;
     const key = JSON.stringify([poses, poses.length > 0 && pose]);
     if (key === this.#shown) return;
     this.#shown = key;

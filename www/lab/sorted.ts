@@ -2,35 +2,44 @@
 
 import type { GivenCamera } from "../rig/protocol";
 import type { Remark } from "./intake";
-import { type Look, lookAt } from "./look";
+import { type Look, type Seen, imageAmong, isDepthName, lookAt } from "./look";
 import { type Settings, type Value, guess, isGuessed } from "./settings";
 import type { Files, Slot } from "./storage";
 
 export interface Sorted {
   slots: Map<Slot, File>;
+  /** Whether the files hold both pictures. */
+  isPair: boolean;
   /** Fields that the files fill, other than those of cameras. */
   fields: Record<string, Value>;
   cameras: GivenCamera[];
   remarks: Remark[];
 }
 
-const isDepthName = (name: string): boolean => /depth|dpt|\bir\b|infra|tof/i.test(name.replace(/[_.-]+/g, " "));
 const isColourName = (name: string): boolean => /colou?r|rgb/i.test(name.replace(/[_.-]+/g, " "));
 
-interface Seen {
-  file: File;
-  look: Look;
-}
-
-/** Of two pictures that compete for one slot, returns the one for the other slot, by its name or else because it is grey. */
+/** Of two pictures that compete for one slot, returns the one for the other slot, by its name or else by its content. */
 function odd(pair: readonly [Seen, Seen], isOther: (name: string) => boolean): Seen {
-  return pair.find(({ file }) => isOther(file.name)) ?? pair.find(({ look }) => look.isGrey) ?? pair[1];
+  const byContent = pair.find(({ look }) => look.isGrey) ?? imageAmong(pair);
+  return pair.find(({ file }) => isOther(file.name)) ?? byContent ?? pair[1];
 }
 
 const ofKind = (seen: readonly Seen[], kind: Look["kind"]): Seen[] => seen.filter(({ look }) => look.kind === kind);
 
+interface Pictures {
+  colours: Seen[];
+  depths: Seen[];
+}
+
+/** A grey image has the bits of a depth map. Beside one that is there, it goes to the free slot for the colour image. */
+async function besideDepth(depth: Seen, there: File): Promise<Pictures> {
+  const last = { file: there, look: await lookAt(there) };
+  const image = last.look.kind === "depth" ? imageAmong([last, depth]) : undefined;
+  return { colours: image ? [image] : [], depths: image === depth ? [] : [depth] };
+}
+
 /** Assigns colour images and depth maps. If two of one kind arrive while the slot of the other kind is free, one of them goes there. */
-function picturesOf(seen: readonly Seen[], there: Files): { colours: Seen[]; depths: Seen[] } {
+async function picturesOf(seen: readonly Seen[], there: Files): Promise<Pictures> {
   const [colours, depths] = [ofKind(seen, "colour"), ofKind(seen, "depth")];
   const [one, two] = colours.length > 0 ? colours : depths;
   if (one && two && depths.length === 0 && !there.depth) {
@@ -41,6 +50,7 @@ function picturesOf(seen: readonly Seen[], there: Files): { colours: Seen[]; dep
     const moved = odd([one, two], isColourName);
     return { colours: [moved], depths: depths.filter((each) => each !== moved) };
   }
+  if (one && colours.length === 0 && there.depth && !there.colour) return besideDepth(one, there.depth);
   return { colours, depths };
 }
 
@@ -102,7 +112,12 @@ export async function sorted(files: readonly File[], there: Files, settings: Set
   const slots: Sorted["slots"] = new Map();
   const remarks: Remark[] = [];
   const say = (words: string, wrong = false) => void remarks.push({ words, wrong });
-  const { colours, depths } = picturesOf(seen, there);
+  const { colours, depths } = await picturesOf(seen, there);
+  const grey = colours.find(({ look }) => look.kind === "depth");
+  if (grey)
+    say(
+      `${grey.file.name} is grey and has the bits of a depth map; it was taken for the colour image. If it is the depth map, choose it there by hand.`,
+    );
   for (const [slot, all] of [
     ["colour", colours],
     ["depth", depths],
@@ -115,7 +130,7 @@ export async function sorted(files: readonly File[], there: Files, settings: Set
       );
   }
   // A complete pair replaces the last one, whose masks do not belong to it.
-  const isPair = slots.has("colour") && slots.has("depth");
+  const isPair = [colours, depths].every(([first]) => first !== undefined && files.includes(first.file));
   const after: Files = { ...(isPair ? {} : there), ...Object.fromEntries(slots) };
   const masks = ofKind(seen, "mask");
   await placeMasks(masks, after, slots);
@@ -126,5 +141,5 @@ export async function sorted(files: readonly File[], there: Files, settings: Set
   const cameras = ofKind(seen, "cameras").flatMap(({ file, look }) =>
     look.cameras.map((camera) => ({ ...camera, file: file.name })),
   );
-  return { slots, fields, cameras, remarks };
+  return { slots, isPair, fields, cameras, remarks };
 }

@@ -94,7 +94,9 @@ async function report(run: Run): Promise<Made> {
   const pictures = await Promise.all(
     shown.map(async ({ title, words, canvas }) => ({ title: words ?? title, dataUrl: await dataUrlOf(canvas) })),
   );
-  const words = [end?.words ?? report.message ?? "", end?.next ?? ""].filter(Boolean);
+  // After a good end the advice is about the page's controls, which the report does not have.
+  const advice = end?.tone === "good" ? "" : (end?.next ?? "");
+  const words = [end?.words ?? report.message ?? "", advice].filter(Boolean);
   const html = runReportHtml({
     ...{ tone: end?.tone ?? "open", status: end?.status ?? `not finished: iteration ${report.iteration}`, words },
     ...{ pose: taken.pose, truth, unit: taken.unit, light: taken.light },

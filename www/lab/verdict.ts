@@ -61,7 +61,7 @@ const HARDER = "Rotate the surfaces, drag the light, or try “Too hard”, wher
 /** The same for files, whose light cannot be dragged. */
 const KEEP = "Rotate the surfaces, or download pose, clouds and refined depth below.";
 /** The right pose, up to noise. */
-const FINER = "Less noise or a larger image would bring it closer.";
+const FINER = "Less noise or larger views would bring it closer.";
 
 /** For runs that do not estimate the pose. */
 const HELD = "The pose stayed at its initial value, as set under Registration.";
@@ -103,7 +103,7 @@ export function verdict(
             : help;
     return {
       tone,
-      status: `${ends[status]}, ${decimals(off, off < 10 ? 2 : 1)}° off`,
+      status: `${ends[status]}, ${decimals(off, 2)}° off`,
       words: [...said, ...missed].join(" "),
       next,
     };

@@ -103,6 +103,7 @@ export class Overlay {
     const [first, ...others] = Object.entries(run.candidates).map(([name, pose]) => ({ name, pose }));
     const found = { name: "found", pose: run.report.estimate };
     this.#stops = first ? [first, found, ...others] : [found];
+    this.#stopRow.parentElement?.style.setProperty("--stops", String(this.#stops.length));
     this.#slider.max = String(WAY * (this.#stops.length - 1));
     this.#slider.value = "0";
     this.#stopRow.replaceChildren(

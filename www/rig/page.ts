@@ -90,8 +90,8 @@ export class RigPage {
     this.#steps.verdict.recolour();
   }
 
-  download(): void {
-    void this.#steps.verdict.download();
+  download(): Promise<void> {
+    return this.#steps.verdict.download();
   }
 
   #stepper(): HTMLElement {

@@ -38,6 +38,8 @@ export interface Summary extends Omit<Reading, "name"> {
   height?: number;
   /** Metres per stored unit of a depth map, or of the depth maps to which a file of cameras belongs. */
   unit?: number;
+  /** Whether the numbers of a depth map are stored as integers. */
+  isWhole?: boolean;
   /** Whether it is an organised cloud, which needs no camera. */
   organised?: boolean;
   cameras: NamedCamera[];

@@ -29,16 +29,6 @@ export function icon(tone: Tone): SVGElement {
   );
 }
 
-/** The verdict's words in a sentence. */
-const ENDS: Record<string, string> = {
-  Estimated: "a calibration was estimated",
-  Consistent: "your calibration is consistent",
-  "Looks right, see warnings": "your calibration is consistent, but see the warnings below",
-  Off: "your calibration is off",
-  "Off, see warnings": "your calibration is off, but see the warnings below",
-  Undecided: "this scene leaves the verdict open",
-};
-
 const WORDS: Record<CheckReport["verdict"], { word: string; tone: Tone }> = {
   consistent: { word: "Consistent", tone: "good" },
   off: { word: "Off", tone: "wrong" },
@@ -70,7 +60,7 @@ function headline(run: Run): { word: string; tone: Tone; sentence: string } {
 }
 
 /** A whole sentence for use beside the controls, where a single word would read like the state of a switch. */
-export const ending = (run: Run): string => `The check is done: ${ENDS[headline(run).word]}.`;
+export const ending = (run: Run): string => `The check is done. Verdict: ${headline(run).word}.`;
 
 /** A frame whose share is below this fraction of the mean share adds little. */
 const LITTLE = 0.3;

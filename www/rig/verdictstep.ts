@@ -91,7 +91,7 @@ export class VerdictStep {
     const { live } = this.#rig;
     this.#run.disabled = this.#busy || live.isRunning || missing.length > 0;
     this.#run.textContent = run ? "Run again" : "Run the check";
-    this.#cancel.disabled = !this.#busy;
+    this.#cancel.hidden = !this.#busy;
     this.#progress.toggleAttribute("data-idle", !this.#busy);
     this.#stale.hidden = !run || this.#busy || live.isRunning || isSame(run, this.#rig);
     this.#live.hidden = !live.isRunning;
@@ -127,14 +127,18 @@ export class VerdictStep {
       this.#status.textContent = wasCancelled(error) ? "Cancelled. Files and calibrations are kept." : "";
       if (!wasCancelled(error)) this.#complain(`The check failed: ${messageOf(error)}`);
     } finally {
+      const wasFocused = document.activeElement === this.#cancel;
       this.#busy = false;
       this.show();
+      // A hidden button loses the focus.
+      if (wasFocused) this.#run.focus();
     }
   }
 
+  /** Saves nothing before there is a verdict. */
   async download(): Promise<void> {
     const { run } = this.#rig;
-    if (!run) return this.#complain("There is no verdict to export yet.");
+    if (!run) return;
     const { inputsOf } = await import("./reportfile");
     const { inputs } = await inputsOf(this.#rig);
     saveJson("rig-check.json", "the verdict, its numbers and the hashes of the files", {

@@ -47,8 +47,9 @@ function summaryOf(reading: RigReading): Summary {
         cameras: reading.image.camera ? [{ camera: reading.image.camera }] : [],
       };
     case "depth": {
-      const { width, height, unit, points, camera } = reading.depth;
-      const rest = { width, height, organised: points !== undefined, cameras: camera ? [{ camera }] : [] };
+      const { width, height, unit, data, points, camera } = reading.depth;
+      const stored = { isWhole: data instanceof Uint16Array, organised: points !== undefined };
+      const rest = { width, height, ...stored, cameras: camera ? [{ camera }] : [] };
       return { ...plain, ...rest, guessed: reading.guessed, ...(unit === undefined ? {} : { unit }) };
     }
     case "mask":

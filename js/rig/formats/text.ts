@@ -88,9 +88,23 @@ async function search(value: unknown, format: string, text: string): Promise<Rea
   return found.cameras.length + found.poses.length > 0 ? { ...found, format } : undefined;
 }
 
+/** Fewest numbers of a camera: a focal length and a centre. */
+const FEWEST_NUMBERS = 3;
+const isText = (value: unknown): boolean => typeof value !== "object" || value === null;
+const numbersIn = (value: unknown): number =>
+  String(value)
+    .split(/[\s,;]+/)
+    .filter((word) => word !== "" && Number.isFinite(Number(word))).length;
+
+/** Whether documents of YAML are notes: lines of text, which may have colons or dashes. */
+function areNotes(documents: readonly unknown[]): boolean {
+  const lines = documents.flatMap((each) => (isText(each) ? [each] : Object.values(each as object)));
+  return lines.every(isText) && lines.reduce((sum: number, line) => sum + numbersIn(line), 0) < FEWEST_NUMBERS;
+}
+
 function nothingIn(value: unknown, format: string): BimodalError {
-  const isText = (each: unknown) => typeof each !== "object" || each === null;
-  if (isText(value) || (Array.isArray(value) && value.every(isText))) return badFile("it is text in an unknown format");
+  const all = Array.isArray(value) ? value : [value];
+  if (all.every(isText) || (format === "YAML" && areNotes(all))) return badFile("it is text in an unknown format");
   return badFile(`it is ${format}, but holds ${NEITHER} by a known name`);
 }
 
