@@ -61,15 +61,12 @@ export function determinant(r: Numbers): number {
 /** R = Rx(alpha) Ry(beta) Rz(gamma), degrees. */
 export function anglesOf(r: Numbers): Pose["angles"] {
   const degrees = 180 / Math.PI;
-  const beta = Math.atan2(at(r, 2), Math.hypot(at(r, 0), at(r, 1)));
-  // At the pole only alpha + gamma is determined; the whole sum is assigned to alpha.
-  const locked = Math.hypot(at(r, 0), at(r, 1)) < 1e-9;
-  const alpha = locked ? Math.atan2(at(r, 7), at(r, 4)) : Math.atan2(-at(r, 5), at(r, 8));
-  return {
-    alpha: alpha * degrees,
-    beta: beta * degrees,
-    gamma: locked ? 0 : Math.atan2(-at(r, 1), at(r, 0)) * degrees,
-  };
+  const cosine = Math.hypot(at(r, 0), at(r, 1));
+  // As in src/pose/angles.rs: at a pole only alpha and gamma together are determined, and alpha is zero.
+  const alpha = cosine < 1e-6 ? 0 : Math.atan2(-at(r, 5), at(r, 8));
+  const [s, c] = [Math.sin(alpha), Math.cos(alpha)];
+  const gamma = Math.atan2(c * at(r, 3) + s * at(r, 6), c * at(r, 4) + s * at(r, 7));
+  return { alpha: alpha * degrees, beta: Math.atan2(at(r, 2), cosine) * degrees, gamma: gamma * degrees };
 }
 
 /** The 4x4 matrix of a pose, four rows of four numbers. */

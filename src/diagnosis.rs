@@ -1,7 +1,7 @@
 //! Diagnoses whether a single albedo explains an image, or whether its residuals show an error of the model or a
 //! varying albedo.
 //!
-//! Nothing else in the crate decides this from residuals. [`Residuals::diagnose`] gives the diagnosis for each method
+//! Nothing else in the crate decides between methods by residuals. [`Residuals::diagnose`] gives the diagnosis for each method
 //! that could take over, because each has its own threshold. [`is_pure_noise`] tells whether a palette of albedos is
 //! fitted at all; [`excess`] and [`share_of_model`] grade the residuals for weights that depend on them. A method may still
 //! decline: local contrast also needs clean normals or edges of albedo (`estimator/finder/local_contrast`).

@@ -143,7 +143,7 @@ pub struct Options {
     pub stop_degrees: f64,
     /// The largest sigma of the rotation about any axis at which a run ends "converged", in degrees; above it, the run
     /// ends "ambiguous". A pose from the image or local contrast with a sigma above 5 degrees is "lost", whatever the
-    /// tolerance.
+    /// tolerance. ICP reports sigmas, but its runs end regardless of them.
     pub tolerance: f64,
     /// Largest distance of a correspondence in image pixels; `None` adapts to the data (never below one pixel, the
     /// paper's value).

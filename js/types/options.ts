@@ -97,7 +97,8 @@ export interface Options {
    */
   stopDegrees?: number;
   /**
-   * The largest sigma of the rotation about any axis with which a run ends "converged"; above it the run ends "ambiguous".
+   * The largest sigma of the rotation about any axis with which a run ends "converged"; above it the run ends "ambiguous". ICP reports
+   * sigmas, but its runs end regardless of them.
    * Range: a number above zero, in degrees.
    * @default 1.5
    */

@@ -45,7 +45,7 @@ export interface StepReport {
     prior: number;
     /** Distances of correspondences. */
     registration: number;
-    /** Differences of the refined depth from the measured depth. */
+    /** Image residuals predicted from the measured normals (Eq. 18). */
     refinement: number;
     /** The sum. */
     total: number;
@@ -62,9 +62,9 @@ export interface StepReport {
   message?: string;
   /** Why the run ended, or the outcome of the last step. */
   reason?: Reason;
-  /** Other poses that fit the data equally well, best first, if the status is "ambiguous". */
+  /** Other poses that fit the data equally well, best first, once a search has found them. */
   rivals?: Pose[];
-  /** The sigmas, once the loop has ended with a pose. */
+  /** The sigmas of the pose, once a registration has found it. */
   uncertainty?: Uncertainty;
   /** Wall time of each stage in the last step. */
   milliseconds: Record<string, number>;

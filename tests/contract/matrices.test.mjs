@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import { checkCalibration, projectFrame, sampleRig } from "../../pkg/index.js";
+import { readRigFile } from "../../pkg/rig.js";
 import { writePose } from "../../pkg/rig-write.js";
 import { matrixText, poseJson } from "../../pkg/write.js";
 import { Estimator, init, outcome, pair, refused } from "./support.mjs";
@@ -33,6 +34,21 @@ function near(found, expected) {
 before(() => init());
 
 describe("a pose", () => {
+  test("has the same angles in a report as read from a file, also where beta is 90 degrees", async () => {
+    // Rx(30) Ry(90) Rz(10), where only the sum of 30 and 10 is determined.
+    const [c, s] = [Math.cos((40 * Math.PI) / 180), Math.sin((40 * Math.PI) / 180)];
+    const rotation = [0, 0, 1, s, c, 0, -c, s, 0];
+    const { image, depth } = pair({ size: 32 });
+    const start = { scale: 1, rotation, translation: [0, 0, 0], angles: { alpha: 0, beta: 0, gamma: 0 } };
+    const estimator = new Estimator(image, depth, { start, registration: "fixed" });
+    const lines = rowsOf(1, rotation, [0, 0, 0]).map((row) => row.join(" "));
+    const { poses } = await readRigFile({ name: "pose.txt", bytes: new TextEncoder().encode(lines.join("\n")) });
+    const order = ({ alpha, beta, gamma }) => [alpha, beta, gamma];
+    for (const { angles } of [estimator.report.pose, poses[0].pose])
+      order(angles).forEach((value, k) => assert.ok(Math.abs(value - [0, 90, 40][k]) < 1e-9, JSON.stringify(angles)));
+    estimator.free();
+  });
+
   for (const [form, start] of Object.entries(FORMS)) {
     test(`starts a run as ${form}`, () => {
       const { image, depth } = pair({ size: 32 });

@@ -20,9 +20,9 @@
 //!                    decision: pose, method, rivals <--------------------+
 //! ```
 //!
-//! All work is cut into slices. Those of search and registration are tasks that depend only on the pair and themselves, so threads may take
-//! some of them ([`Worker`](super::Worker)). Results count in the order of the tasks, not of their arrival, so the outcome is the same to
-//! the bit.
+//! The work is cut into slices; near an initial pose, a slice may be a whole registration. Slices of search and registration are tasks that
+//! depend only on the pair and themselves, so threads may take some of them ([`Worker`](super::Worker)). Results count in the order of the
+//! tasks, not of their arrival, so the outcome is the same to the bit.
 //!
 //! | file | what it holds |
 //! |---|---|

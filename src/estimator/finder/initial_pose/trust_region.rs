@@ -63,7 +63,8 @@ impl TrustRegion {
             && gauge::keeps_size(pair, pose, &self.initial)
     }
 
-    /// The prior that silhouettes use; `None` if the image does not depend on distances.
+    /// The prior of registrations that are held near the initial pose; `None` if the image does not depend on distances or
+    /// no distance is given.
     pub fn prior(&self, pair: &ViewPair) -> Option<PosePrior> {
         prior(pair, self.initial, self.degrees, Some(self.distance).filter(|distance| !distance.is_infinite()))
     }
