@@ -164,6 +164,19 @@ const pose = [
   claim("pose", "From 20° it reaches the [true|given] pose", () => (numberOf(...HOME) < 1 ? "true" : "given")),
 ];
 
+const CHEEK = "loop&offset=0&px=0.42&py=0.56";
+/** Mean error of the pixels' normals under the right pose and a prior of this weight, in the scene of the lesson. */
+function meanUnder(weight) {
+  const view = { surface: "bust", light: "window", size: 64, angles: { beta: 20 }, noise: 0.01 };
+  const { image, depth, pose, light, truth } = sample(view);
+  const held = { light, start: pose, scale: 1, registration: "fixed", shading: "pixel" };
+  const estimator = new Estimator(image, depth, { ...held, lambda: { prior: weight } });
+  for (let stage = 0; stage < 3; stage++) estimator.stepStage();
+  const error = normalDegrees(estimator.imageNormals(), truth.imageNormals);
+  estimator.free();
+  return error;
+}
+
 const loop = [
   claim("loop", "A small {lambda} leaves [several minima|one minimum]", () =>
     [0, 20].every((offset) => numberOf(`loop&offset=${offset}&weight=-3`, "minima") > 1)
@@ -173,7 +186,7 @@ const loop = [
   claim("loop", "With a larger one they [merge into one|split]", () =>
     [0, 20].every((offset) => numberOf(`loop&offset=${offset}&weight=0`, "minima") === 1) ? "merge into one" : "split",
   ),
-  claim("loop", "Raise λ until the minima of the pixel have [merged|split]", () =>
+  claim("loop", "Raise λ until the minima of the pixel, now another one, have [merged|split]", () =>
     [0, 20].every((offset) => numberOf(`loop&offset=${offset}&weight=0`, "minima") === 1) ? "merged" : "split",
   ),
   claim("loop", "far from the true normal: [#]° off at λ = 1", () => numberOf("loop&offset=20&weight=0", "end")),
@@ -186,14 +199,21 @@ const loop = [
       "toward",
     ]),
   ),
-  claim("loop", "a prior that is far off is [ignored|followed]", () =>
+  claim("loop", "off is [ignored|followed]", () =>
     numberOf("loop&offset=40&weight=-1.3&robust=1", "end") < 0.3 * numberOf("loop&offset=40&weight=-1.3", "end")
       ? "ignored"
       : "followed",
   ),
-  claim("loop", "near the true normal: at λ = 1 the solver is [#]° off", () =>
-    numberOf("loop&offset=0&weight=0", "end"),
+  claim("loop", "the minima [merge into one|split] near the true normal", () =>
+    numberOf(`${CHEEK}&weight=-3`, "minima") > 1 && numberOf(`${CHEEK}&weight=0`, "minima") === 1
+      ? "merge into one"
+      : "split",
   ),
+  claim("loop", "near the true normal: the solver is [#]° off", () => numberOf(`${CHEEK}&weight=-3`, "end")),
+  claim("loop", "at λ = 0.001 and [#]° at λ = 1", () => numberOf(`${CHEEK}&weight=0`, "end")),
+  claim("loop", "the mean error is then [#]° without a prior", () => meanUnder(0)),
+  claim("loop", "without a prior, [#]° at λ = 0.05", () => meanUnder(0.05)),
+  claim("loop", "and [#]° at λ = 10", () => meanUnder(10)),
   claim("loop", "The solver ends [#]° off; with", () => numberOf("loop&offset=40&weight=-1.3&robust=1", "end")),
   claim("loop", "with the plain prior it was [#]°", () => numberOf("loop&offset=40&weight=-1.3", "end")),
   claim("loop", "the error of the solver?\nIt [grows|falls|stays]", () =>
