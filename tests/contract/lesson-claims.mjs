@@ -3,7 +3,7 @@
 // In the words of a claim, [rises|falls] lists the words that the text might use, and [#] stands for a number. `holds` computes from the
 // figure which word or number is right.
 import { normalDegrees } from "../../protocols/measure-shapes.mjs";
-import { figure, labRun } from "./lesson-figures.mjs";
+import { figure, labRun, learn } from "./lesson-figures.mjs";
 import { lambert, normal, relief, strips } from "./lesson-first-claims.mjs";
 import { colours, grey, pixel } from "./lesson-light-claims.mjs";
 import { Estimator, init, sample, shadeNormals } from "./support.mjs";
@@ -141,6 +141,8 @@ const prior = [
 ];
 
 const SEARCH = ["pose&run=search", "error"];
+/** The residual beyond the range of the slider. */
+const residualAt = (offset) => learn.pose({ run: "hold", light: "window", offset }).next().value.numbers.residual;
 const HOME = ["pose&offset=20&run=register", "error"];
 const pose = [
   claim("pose", "Move the pose away from 0°. Watch the residual [rise|fall]", () => {
@@ -161,6 +163,12 @@ const pose = [
   claim("pose", "the residual falls from [#] there", () => numberOf("pose&offset=40", "residual")),
   claim("pose", "to [#] at 10°, where the tolerance ends", () => numberOf("pose&offset=10", "residual")),
   claim("pose", "it would fall on to [#] at the true pose", () => numberOf("pose&offset=0", "residual")),
+  claim("pose", "The residual then reads [#] instead", () => numberOf("pose&offset=40&run=register", "residual")),
+  claim("pose", "instead of [#], because the run", () => numberOf("pose&offset=40", "residual")),
+  claim("pose", "the residual [falls again|rises] from 60° to 100°", () => {
+    const [near, middle, far] = [60, 80, 100].map(residualAt);
+    return near > middle && middle > far ? "falls again" : "rises";
+  }),
   claim("pose", "From 20° it reaches the [true|given] pose", () => (numberOf(...HOME) < 1 ? "true" : "given")),
 ];
 
