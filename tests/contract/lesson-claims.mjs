@@ -276,9 +276,17 @@ const paint = [
   claim("paint", "takes [nearly all|a small part] of it for albedo", () =>
     numberOf("paint&shadow=0.9", "taken") > 90 ? "nearly all" : "a small part",
   ),
-  claim("paint", "The remainder {ej} is [largest|smallest] at the edge of the shadow", () => {
-    const { rim, inside, lit } = figure("paint&paint=0&shadow=0.9");
-    return rim > inside && rim > lit ? "largest" : "smallest";
+  claim("paint", "The remainder {ej} is [largest|smallest] where the shadow meets the outline", () => {
+    const { rim, outline, inside, lit } = figure("paint&paint=0&shadow=0.9");
+    return outline > 5 * Math.max(rim, inside, lit) ? "largest" : "smallest";
+  }),
+  claim("paint", "Along the edge of the shadow on the face it is [small|large]", () => {
+    const { rim, lit } = figure("paint&paint=0&shadow=0.9");
+    return rim < 1.5 * lit ? "small" : "large";
+  }),
+  claim("paint", "The remainder is [bright|dark] only where the shadow meets the outline", () => {
+    const { rim, outline, inside, lit } = figure("paint&paint=0&shadow=0.9");
+    return outline > 0.2 && Math.max(rim, inside, lit) < 0.04 ? "bright" : "dark";
   }),
   claim("paint", "The correlation of albedo and paint [falls|rises]", () =>
     change(numberOf("paint", "likeness"), numberOf("paint&shadow=0.9", "likeness"), ["rises", "falls"]),
@@ -287,9 +295,8 @@ const paint = [
   claim("paint", "Chromaticity is now [less|more] informative", () =>
     change(numberOf("paint", "likeness"), numberOf("paint&light=colourful", "likeness"), ["more", "less"]),
   ),
-  claim("paint", "and the normals get [worse|better]", () =>
-    change(1.05 * numberOf("paint", "degrees"), numberOf("paint&light=colourful", "degrees"), ["worse", "better"]),
-  ),
+  claim("paint", "falls from [#] to 0.857", () => numberOf("paint", "likeness")),
+  claim("paint", "from 0.896 to [#].", () => numberOf("paint&light=colourful", "likeness")),
 ];
 
 const failure = [

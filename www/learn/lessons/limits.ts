@@ -14,15 +14,15 @@ export const paint: Lesson = {
   formula: () => block(log(symbol("S")), mo("="), symbol("aj"), mo("+"), shading(), mo("+"), symbol("ej")),
   formulaWords: "The log intensity of colour j is its log albedo plus its shading plus a remainder.",
   text: [
-    "Print is not shape. A model with a single albedo would interpret every painted edge as a fold. So once the pose has converged, the program tests whether a few different albedos explain the picture better: each pixel has the shading of its measured normal plus one of a few offsets {aj}, one number for each colour. The evidence in the picture decides how many albedos there are.",
+    "Print is not shape. A model with a single albedo would interpret every painted edge as a fold. So once the pose has converged, the program tests whether a few different albedos explain the picture better: each pixel has the shading of its measured normal plus one of a few offsets {aj}, one number for each colour. Another albedo is kept only if it explains the picture better than its additional numbers would by chance.",
     "Chromaticity, the ratio of red, green and blue whatever the brightness, decides: coloured paint changes red, green and blue by different amounts, while shading under whitish light changes them almost equally. Grey paint is harder to separate, and any paint is harder to separate under light of many colours.",
-    "A cast shadow violates the model, because the light there is different. But a shadow that darkens red, green and blue by the same factor has the same effect on a pixel as dark paint, so the program takes nearly all of it for albedo. The remainder {ej} is largest at the edge of the shadow, where robust weights reduce the influence of the pixels. The estimated albedo then follows the shadow as well as the paint, and the status does not warn of it.",
+    "A cast shadow violates the model, because the light there is different. But a shadow that darkens red, green and blue by the same factor has the same effect on a pixel as dark paint, so the program takes nearly all of it for albedo. The remainder {ej} is largest where the shadow meets the outline of the object, and robust weights reduce the influence of the pixels there. Along the edge of the shadow on the face it is small. The estimated albedo then follows the shadow as well as the paint, and the status does not warn of it.",
   ],
   tasks: [
     "Raise the strength of the paint. It appears in the albedo and disappears from the shading.",
-    "Remove the paint and deepen the shadow. Nearly all of it appears in the albedo, and its edge in the remainder.",
+    "Remove the paint and deepen the shadow. Nearly all of it appears in the albedo. The remainder is bright only where the shadow meets the outline.",
     "Deepen the shadow with the paint at 0.8. The correlation of albedo and paint falls, but the status is still converged.",
-    "Choose the coloured lamps. Chromaticity is now less informative, and the normals get worse.",
+    "Choose the coloured lamps. Chromaticity is now less informative: the correlation of albedo and paint falls from 0.896 to 0.857.",
   ],
   tries: [
     { set: { light: "window", shadow: 0, paint: 1 } },
