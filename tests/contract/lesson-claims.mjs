@@ -259,6 +259,11 @@ const sensor = [
     numberOf("sensor&holes=40", "filled") > 90 ? "filled" : "left",
   ),
   claim("sensor", "Of these holes [#] % are filled", () => numberOf("sensor&noise=0.4&holes=40", "filled")),
+  claim("sensor", "cut off from the rest, such as the crown, are [dropped|kept]", () =>
+    numberOf("sensor&noise=0.4&holes=40", "kept") < 95 && numberOf("sensor&noise=0.4", "kept") > 99
+      ? "dropped"
+      : "kept",
+  ),
   claim("sensor", "it is less informative, and the refined depth gets [worse|better]", () =>
     change(numberOf("sensor", "after"), numberOf("sensor&picture=0.2", "after"), ["worse", "better"]),
   ),

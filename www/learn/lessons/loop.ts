@@ -88,24 +88,25 @@ export const sensor: Lesson = {
   formulaWords:
     "A weight mu times the squared distance between the refined and the measured depth, plus the cost of the colours for the normals of the refined depth. Mu is the variance of the shading over that of the sensor.",
   text: [
+    "The figure shows normals of a depth map with noise and holes, as measured and as refined by the picture. Noise spoils the normals most, because differences between neighbouring pixels amplify it.",
     "A depth sensor is right on the large scale and noisy on the small one. Shading is the opposite: it gives slopes from pixel to pixel and drifts over long distances. The two complement each other.",
-    "Once the pose is known, the refinement finds a depth {z} that stays near the measured depth {d} and whose normals explain the colours. The weight {mu} is not tuned by hand: it is a ratio of two variances, both measured from the data. {sigmaS} is how far the log colours scatter about the model, and {sigmad} how far the sensor's depths scatter about the surface. Holes are filled where the colour camera sees the surface. The readout counts all holes inside the object, whether the colour camera sees them or not; the background is no hole. Noise spoils the normals most, because differences between neighbouring pixels amplify it. Without any noise the normals are still about 4° off: the depth map of this figure is only 64 pixels wide, too coarse for the fine shape of the face. With twice as many pixels 1° is left.",
+    "Once the pose is known, the refinement finds a depth {z} that stays near the measured depth {d} and whose normals explain the colours. The weight {mu} is not tuned by hand: it is a ratio of two variances, both measured from the data. {sigmaS} is how far the log colours scatter about the model, and {sigmad} how far the sensor's depths scatter about the surface. Holes are filled where the colour camera sees the surface. The readout counts all holes inside the object, whether the colour camera sees them or not; the background is no hole. Without any noise the normals are still about 4° off: the depth map of this figure is only 64 pixels wide, too coarse for the fine shape of the face. With twice as many pixels 1° is left.",
     "Parts that the picture does not show stay as measured: the side facing away from the camera, and parts in shadow.",
   ],
   tasks: [
     "Raise the noise of the sensor. The measured normals become rough; the refined ones stay smooth.",
-    "Cut holes into the depth map, here in 40 % of it. Of these holes 99 % are filled.",
+    "Cut holes into the depth map, here in 40 % of it. Of these holes 99 % are filled. Small pieces that the holes cut off from the rest, such as the crown, are dropped.",
     "Raise the noise of the picture. Now it is less informative, and the refined depth gets worse.",
   ],
   tries: [
-    { set: { picture: 0.005, noise: 0.02 }, sweep: { key: "noise", to: 1 } },
-    { set: { noise: 0.4, holes: 40 } },
-    { set: { noise: 0.4, picture: 0.2 } },
+    { set: { picture: 0.005, noise: 0.02, holes: 5 }, sweep: { key: "noise", to: 1 } },
+    { set: { noise: 0.4, holes: 40, picture: 0.005 } },
+    { set: { noise: 0.4, picture: 0.2, holes: 5 } },
   ],
   guesses: [
     {
       question: "The noise of the sensor grows from 0.4 to 1 px. What happens to the refined normals?",
-      before: 0,
+      before: 1,
       at: { noise: 0.4, holes: 5, picture: 0.005 },
       choices: ["They get as rough as the measured ones", "They hardly change", "They get better"],
       right: 1,
