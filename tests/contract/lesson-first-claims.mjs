@@ -152,7 +152,7 @@ export const strips = [
     numberOf(CHIN, "near") < 0.5 ? "follow" : "leave",
   ),
   claim("strips", "farther away they [go astray|stay on it]", () =>
-    numberOf(CHIN, "far") > 10 * numberOf(CHIN, "near") ? "go astray" : "stay on it",
+    ["far", "plotted"].every((key) => numberOf(CHIN, key) > 10 * numberOf(CHIN, "near")) ? "go astray" : "stay on it",
   ),
   claim("strips", "Its isophote in the reflectance map [always|rarely] runs through the cross", () =>
     [0.25, 0.4, 0.55, 0.75].every((px) => numberOf(`strips&py=0.45&px=${px}`, "off") < 1e-3) ? "always" : "rarely",
