@@ -123,7 +123,7 @@ function reflectanceMap(lamp: number[], brightness: number, truth: readonly [num
       key: "map",
       title: "Reflectance map R(p, q)",
       alt: "Intensity for every pair of slopes. One line has the intensity of the chosen pixel; a cross marks its true slopes.",
-      legend: "line: slopes with the pixel's intensity; cross: the true ones",
+      legend: "across: p; down: q; line: the pixel's intensity; cross: the truth",
     },
     { width: SIDE, height: SIDE },
     grey(values),
