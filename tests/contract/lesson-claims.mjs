@@ -84,6 +84,7 @@ const orders = [
   claim("orders", "The curve of degree 3 stays at [zero|one]", () =>
     numberOf("orders", "degree3") < 1e-4 ? "zero" : "one",
   ),
+  claim("orders", "the one of this figure leaves [#] %", () => numberOf("orders", "direct")),
   claim("orders", "together come within [#] % of the cosine", () => numberOf("orders", "byDegree")),
 ];
 
