@@ -315,7 +315,7 @@ const failure = [
   claim("failure", "Widen it to 10 %: now the status is [converged|ambiguous|lost]", () => wordOf("failure&amount=95")),
   claim("failure", "with a sigma of [#]°", () => numberOf("failure&amount=95", "sigma")),
   claim("failure", "instead of the [#]° at full width", () => numberOf("failure", "sigma")),
-  claim("failure", "errors of two or three sigmas are [rare|usual]", () =>
+  claim("failure", "Errors of two or three sigmas are [rare|usual]", () =>
     [0, 25, 50, 75].every((amount) => {
       const { error, sigma } = figure(`failure&amount=${amount}`);
       return error < 2 * sigma;
