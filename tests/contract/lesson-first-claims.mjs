@@ -1,5 +1,5 @@
 // Statements of the first four lessons that their figures must confirm; lesson-claims.mjs says how a claim is written.
-import { figure, normalColour } from "./lesson-figures.mjs";
+import { figure, learn, normalColour } from "./lesson-figures.mjs";
 import { shadeLamp } from "../../pkg/index.js";
 
 const change = (from, to, [more, less]) => (to > from ? more : less);
@@ -22,17 +22,24 @@ export const normal = [
     const [red, green, blue] = normalColour(0, 0, -1);
     return blue === 255 && Math.round(red) === 128 && Math.round(green) === 128 ? "light blue" : "grey";
   }),
-  claim("normal", "The left cheek turns toward the camera, and its map becomes [bluer|less blue]", () =>
-    change(numberOf("normal&px=0.36&py=0.56&turn=-40", "blue"), numberOf("normal&px=0.36&py=0.56&turn=40", "blue"), [
-      "bluer",
-      "less blue",
-    ]),
+  claim(
+    "normal",
+    "The cheek on the left of the picture turns toward the camera, and its map becomes [bluer|less blue]",
+    () =>
+      change(numberOf("normal&px=0.36&py=0.56&turn=-40", "blue"), numberOf("normal&px=0.36&py=0.56&turn=40", "blue"), [
+        "bluer",
+        "less blue",
+      ]),
   ),
   claim("normal", "The arrow [shrinks to a dot|grows] in the middle and is longest at the edge", () => {
-    const lengths = [0.06, 0.25, 0.5].map((px) => Math.sin((numberOf(state(px), "tilt") * Math.PI) / 180));
+    const lengths = [0.16, 0.3, 0.5].map((px) => Math.sin((numberOf(state(px), "tilt") * Math.PI) / 180));
     return lengths[0] > lengths[1] && lengths[1] > lengths[2] && lengths[2] < 0.03 ? "shrinks to a dot" : "grows";
   }),
-  claim("normal", "Its map [stays the same|turns with it]", () => {
+  claim("normal", "Its [dots|cheeks] move, but", () => {
+    const dots = [-60, 60].map((turn) => marksOf({ surface: "ball", px: 0.4, py: 0.4, turn })[0].points.join());
+    return dots[0] !== dots[1] ? "dots" : "cheeks";
+  }),
+  claim("normal", "Its dots move, but its map [stays the same|turns with it]", () => {
     const [left, right] = [-60, 60].map((turn) => figure(`normal&surface=ball&px=0.4&py=0.4&turn=${turn}`));
     return ["red", "green", "blue"].every((key) => left[key] === right[key]) ? "stays the same" : "turns with it";
   }),
@@ -40,9 +47,12 @@ export const normal = [
     numberOf(state(0.02), "tilt") > 80 ? "perpendicular" : "parallel",
   ),
   claim("normal", "in the normal map?\n[Turquoise|Orange|Purple].", () =>
-    colourOf("normal&surface=ball&px=0.22&py=0.25"),
+    colourOf("normal&surface=ball&px=0.29&py=0.31"),
   ),
 ];
+
+/** The marks on the surface of lesson 1. */
+const marksOf = (values) => learn.normal(values).next().value.panels[0].marks;
 
 function state(px) {
   return `normal&surface=ball&py=0.5&px=${px}`;
