@@ -125,10 +125,10 @@ export const relief = [
     numberOf("relief&stretch=0.2", "difference") < ZERO ? "stay the same" : "differ",
   ),
   claim("relief", "The pictures now [differ|agree]: the lamp has to move", () =>
-    numberOf("relief&stretch=0.4&lamp=0", "difference") > 1 ? "differ" : "agree",
+    numberOf("relief&stretch=0.2&lamp=0", "difference") > 1 ? "differ" : "agree",
   ),
   claim("relief", "The pictures now [differ|agree]: only its own albedo", () =>
-    numberOf("relief&stretch=0.4&paint=0", "difference") > 1 ? "differ" : "agree",
+    numberOf("relief&stretch=0.2&paint=0", "difference") > 1 ? "differ" : "agree",
   ),
   claim("relief", "The pictures are [the same|different] again, and the albedo is white everywhere", () =>
     numberOf("relief&stretch=-1", "difference") < ZERO ? "the same" : "different",
@@ -144,6 +144,8 @@ export const relief = [
     return paint > 1.2 && difference < ZERO ? "changes from place to place" : "is the same everywhere";
   }),
   claim("relief", "Its brightest value is [#] times its darkest", () => numberOf("relief&stretch=0.5", "paint")),
+  claim("relief", "so it moves by [#]°", () => numberOf("relief&stretch=-1", "lamp")),
+  claim("relief", "The lamp here is [#]° from the line of sight", () => numberOf("relief&stretch=-1", "lamp") / 2),
   claim("relief", "its matrix keeps every [length|direction]", () =>
     Math.abs(numberOf("relief&stretch=-1", "paint") - 1) < ZERO ? "length" : "direction",
   ),

@@ -32,8 +32,8 @@ export const relief: Lesson = {
   text: [
     "Sculptors of coins and medals have always known it: a portrait a few millimetres deep looks like a whole head. Multiply all depths {z} by a factor {s}, here {=stretch}, and add a tilt: a depth that grows by {t} with each step {x} to the right. In this formula a prime marks the other surface and its picture: its depth is {z′}, and its intensity {E′} is to be the old {E}. The plot shows a cross-section of both surfaces as heights: a height is a depth with the opposite sign.",
     "Every normal changes, and yet a lamp in another place, together with another albedo, restores the picture pixel by pixel. This is the bas-relief ambiguity. It holds for any factor {s} and any tilt {t}, for one picture or a hundred under different lamps.",
-    "The reason is a matrix. Scale each normal by its albedo and call the result b: the length of b is the albedo, and the intensity is b·{l}, where the length of {l} is the strength of the lamp. For any invertible matrix A, the vectors A b and A⁻ᵀ {l} have the same product. The length of A b is the other surface's albedo; it changes from place to place, because A stretches vectors of different directions by different factors. Most matrices turn the normals into vectors that belong to no surface: along a loop, a closed path in the picture, their slopes do not add up to zero (lesson 9). Those that flatten, tilt or invert depth are the ones that leave a surface.",
-    "The most famous case is {s} = −1: near and far are exchanged, and a face becomes its mould. It needs no other albedo, only a lamp rotated by half a turn about the line of sight, because its matrix keeps every length. People see the mould of a face as a face, because they expect faces, and light from above.",
+    "The reason is a matrix. Scale each normal by its albedo and call the result b: the length of b is the albedo, and the intensity is b·{l}, where the length of {l} is the strength of the lamp. For any invertible matrix A, the vectors A b and A⁻ᵀ {l} have the same product. A normal is parallel to ({z_x}, {z_y}, −1), where an index names a derivative. So {z′} = {s}{z} is the matrix A = diag({s}, {s}, 1), and a tilt puts −{t} at its top right. The length of A b is the other surface's albedo; it changes from place to place, because A stretches vectors of different directions by different factors. Most other matrices turn the normals into vectors that belong to no surface: on a closed path the steps up and down must cancel, and theirs do not (lesson 9 meets such a contradiction).",
+    "The most famous case is {s} = −1: near and far are exchanged, and a face becomes its mould. It needs no other albedo, only a lamp rotated by half a turn about the line of sight, because its matrix keeps every length: diag(−1, −1, 1) is that half turn. The lamp here is 35° from the line of sight, so it moves by 70°. People see the mould of a face as a face, because they expect faces, and light from above.",
     "So a single picture does not determine a shape. Something else has to be known: the lamp, the albedo, the silhouette, or a depth map. From lesson 10 on, this page uses the depth map.",
   ],
   tasks: [
@@ -44,8 +44,8 @@ export const relief: Lesson = {
   ],
   tries: [
     { set: { lamp: 1, paint: 1, slope: 0, stretch: 1 }, sweep: { key: "stretch", to: 0.2 } },
-    { set: { stretch: 0.4, slope: 0, paint: 1, lamp: 0 } },
-    { set: { stretch: 0.4, slope: 0, lamp: 1, paint: 0 } },
+    { set: { stretch: 0.2, slope: 0, paint: 1, lamp: 0 } },
+    { set: { stretch: 0.2, slope: 0, lamp: 1, paint: 0 } },
     { set: { slope: 0, lamp: 1, paint: 1, stretch: -1 } },
   ],
   guesses: [
