@@ -35,7 +35,7 @@ export const exercises: readonly Exercise[] = [
       "Both pictures have 3 % noise. Compare the mean errors of the normals, and explain the difference by the shapes of the two cost maps.",
     answer: [
       "The coloured lamps leave a few small dark spots. The three curves of equal intensity cross at large angles, so noise moves the crossing only a little. Under the window light the three colours change almost in proportion, so the curves almost coincide. The valley is long and flat, and noise moves its lowest point far along it.",
-      "In numbers: the Gauss-Newton matrix of the pixel is the sum over the colours of each gradient times its transpose, and the variance of the normal is that of the noise divided by the smallest eigenvalue. With three nearly parallel gradients that eigenvalue is nearly zero.",
+      "In numbers: near its minimum, the cost rises like a quadratic form of the step. The matrix of that form, the Gauss-Newton matrix, is the sum over the colours of each gradient times its transpose, and the variance of the normal is that of the noise divided by the smallest eigenvalue. With three nearly parallel gradients that eigenvalue is nearly zero.",
     ],
   },
   {
