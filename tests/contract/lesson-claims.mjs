@@ -132,7 +132,7 @@ const prior = [
     return none - all < 0.1 * none ? "hardly" : "always";
   }),
   claim("prior", "The error is about [as large as|half of that] without a prior", () =>
-    Math.abs(numberOf("prior&weight=-4", "degrees") / numberOf("prior&share=0", "degrees") - 1) < 0.1
+    Math.abs(numberOf("prior&share=20&weight=-4", "degrees") / numberOf("prior&share=0", "degrees") - 1) < 0.1
       ? "as large as"
       : "half of that",
   ),

@@ -113,7 +113,7 @@ export const prior: Lesson = {
   ],
   can: "You can explain how a depth map enters the estimate as a prior, and what its weight does.",
   controls: [
-    { kind: "slider", key: "share", label: "Pixels with a prior", min: 0, max: 100, step: 1, initial: 20, unit: "%" },
+    { kind: "slider", key: "share", label: "Pixels with a prior", min: 0, max: 100, step: 1, initial: 0, unit: "%" },
     {
       kind: "slider",
       key: "weight",
