@@ -4,9 +4,9 @@
 // figure which word or number is right.
 import { normalDegrees } from "../../protocols/measure-shapes.mjs";
 import { figure, labRun, learn } from "./lesson-figures.mjs";
-import { lambert, normal, relief, strips } from "./lesson-first-claims.mjs";
+import { lambert, normal, orders, relief, strips } from "./lesson-first-claims.mjs";
 import { colours, grey, pixel } from "./lesson-light-claims.mjs";
-import { Estimator, init, sample, shadeNormals } from "./support.mjs";
+import { Estimator, init, sample } from "./support.mjs";
 
 await init();
 
@@ -18,75 +18,6 @@ const statusOf = (state) => figure(state).status;
 
 /** The words of a status, without its reason. */
 const wordOf = (state) => statusOf(state).split(":")[0];
-
-/** First coefficients of the three channels, and the first one of the second order within a channel. */
-const CHANNELS = [0, 9, 18];
-const SECOND = 4;
-const NORMAL = [0.3, -0.4, -Math.sqrt(0.75)];
-
-const orders = [
-  claim(
-    "orders",
-    "nine coefficients for each colour, [#] in all",
-    () => sample({ surface: "bust", light: "window", size: 16 }).light.length,
-  ),
-  claim("orders", "Second-order terms have the [same value|opposite value] for opposite normals", () => {
-    const { light } = sample({ surface: "bust", light: "colourful", size: 16 });
-    const second = light.map((value, at) =>
-      CHANNELS.some((from) => at >= from + SECOND && at < from + 9) ? value : 0,
-    );
-    const [here, there] = [1, -1].map((sign) =>
-      shadeNormals(
-        second,
-        Float32Array.from(NORMAL, (part) => sign * part),
-      ),
-    );
-    return here.every((value, at) => Math.abs(value - there[at]) < 1e-6) ? "same value" : "opposite value";
-  }),
-  claim("orders", "their sum [stays the same|changes]", () =>
-    [-0.6, 0.6].every((constant) => numberOf(`orders&constant=${constant}`, "change") < 1e-6)
-      ? "stays the same"
-      : "changes",
-  ),
-  claim("orders", "[Two balls change|One ball changes], and their sum", () => {
-    const [none, much] = [0, 0.6].map((constant) => figure(`orders&constant=${constant}`));
-    const changed = ["order0", "order1", "order2"].filter((key) => Math.abs(none[key] - much[key]) > 0.1);
-    return changed.length === 2 ? "Two balls change" : "One ball changes";
-  }),
-  claim("orders", "The curve for the intensity falls [below|above] zero in the shadow", () =>
-    numberOf("orders&around=0.02", "least") < 0 ? "below" : "above",
-  ),
-  claim("orders", "the curve for the logarithm stays [above|below] it", () =>
-    numberOf("orders&around=0.02", "leastLog") > 0 ? "above" : "below",
-  ),
-  claim("orders", "The error of the nine numbers for the logarithm [falls|rises]", () =>
-    change(numberOf("orders&around=0.02", "byLog"), numberOf("orders&around=0.5", "byLog"), ["rises", "falls"]),
-  ),
-  claim("orders", "under a single lamp in the dark its error is [larger|smaller]", () =>
-    change(numberOf("orders&around=0.02", "direct"), numberOf("orders&around=0.02", "byLog"), ["larger", "smaller"]),
-  ),
-  claim("orders", "restores every intensity?\n[It is added to the three squares|No change can]", () =>
-    ["order0", "order2"].every(
-      (key) => Math.abs(numberOf("orders&constant=0.6", key) - numberOf("orders", key)) > 0.1,
-    ) && numberOf("orders&constant=0.6", "change") < 1e-6
-      ? "It is added to the three squares"
-      : "No change can",
-  ),
-  claim("orders", "Its part of degree 3 is [zero|large]", () =>
-    numberOf("orders", "degree3") < 1e-4 ? "zero" : "large",
-  ),
-  claim("orders", "a large part of degree 1 and a [smaller|larger] one of degree 2", () =>
-    change(numberOf("orders", "degree1"), numberOf("orders", "degree2"), ["larger", "smaller"]),
-  ),
-  claim("orders", "all higher ones together are [small|large]", () =>
-    numberOf("orders", "byDegree") / 100 < 0.3 * numberOf("orders", "degree2") ? "small" : "large",
-  ),
-  claim("orders", "The curve of degree 3 stays at [zero|one]", () =>
-    numberOf("orders", "degree3") < 1e-4 ? "zero" : "one",
-  ),
-  claim("orders", "the one of this figure leaves [#] %", () => numberOf("orders", "direct")),
-  claim("orders", "together come within [#] % of the cosine", () => numberOf("orders", "byDegree")),
-];
 
 const surface = [
   claim("surface", "slopes are [blind|sensitive] to a step", () =>
@@ -282,17 +213,17 @@ const paint = [
   claim("paint", "takes [nearly all|a small part] of it for albedo", () =>
     numberOf("paint&shadow=0.9", "taken") > 90 ? "nearly all" : "a small part",
   ),
-  claim("paint", "The remainder {ej} is [largest|smallest] where the shadow meets the outline", () => {
-    const { rim, outline, inside, lit } = figure("paint&paint=0&shadow=0.9");
-    return outline > 5 * Math.max(rim, inside, lit) ? "largest" : "smallest";
+  claim("paint", "The remainder {ej} is [largest|smallest] where the shadow meets the silhouette", () => {
+    const { rim, silhouette, inside, lit } = figure("paint&paint=0&shadow=0.9");
+    return silhouette > 5 * Math.max(rim, inside, lit) ? "largest" : "smallest";
   }),
   claim("paint", "Along the edge of the shadow on the face it is [small|large]", () => {
     const { rim, lit } = figure("paint&paint=0&shadow=0.9");
     return rim < 1.5 * lit ? "small" : "large";
   }),
-  claim("paint", "The remainder is [bright|dark] only where the shadow meets the outline", () => {
-    const { rim, outline, inside, lit } = figure("paint&paint=0&shadow=0.9");
-    return outline > 0.2 && Math.max(rim, inside, lit) < 0.04 ? "bright" : "dark";
+  claim("paint", "The remainder is [bright|dark] only where the shadow meets the silhouette", () => {
+    const { rim, silhouette, inside, lit } = figure("paint&paint=0&shadow=0.9");
+    return silhouette > 0.2 && Math.max(rim, inside, lit) < 0.04 ? "bright" : "dark";
   }),
   claim("paint", "The correlation of albedo and paint [falls|rises]", () =>
     change(numberOf("paint", "likeness"), numberOf("paint&shadow=0.9", "likeness"), ["rises", "falls"]),

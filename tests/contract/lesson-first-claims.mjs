@@ -1,6 +1,6 @@
-// Statements of the first four lessons that their figures must confirm; lesson-claims.mjs says how a claim is written.
+// Statements of the first five lessons that their figures must confirm; lesson-claims.mjs says how a claim is written.
 import { figure, learn, normalColour } from "./lesson-figures.mjs";
-import { shadeLamp } from "../../pkg/index.js";
+import { sample, shadeLamp, shadeNormals } from "../../pkg/index.js";
 
 const change = (from, to, [more, less]) => (to > from ? more : less);
 const claim = (where, words, holds) => ({ where, words, holds });
@@ -172,4 +172,73 @@ export const strips = [
   claim("strips", "explain it?\nA whole [curve|point]", () =>
     numberOf("strips&px=0.4&py=0.45", "curve") > 20 ? "curve" : "point",
   ),
+];
+
+/** First coefficients of the three channels, and the first one of the second order within a channel. */
+const CHANNELS = [0, 9, 18];
+const SECOND = 4;
+const NORMAL = [0.3, -0.4, -Math.sqrt(0.75)];
+
+export const orders = [
+  claim(
+    "orders",
+    "nine coefficients for each colour, [#] in all",
+    () => sample({ surface: "bust", light: "window", size: 16 }).light.length,
+  ),
+  claim("orders", "Second-order terms have the [same value|opposite value] for opposite normals", () => {
+    const { light } = sample({ surface: "bust", light: "colourful", size: 16 });
+    const second = light.map((value, at) =>
+      CHANNELS.some((from) => at >= from + SECOND && at < from + 9) ? value : 0,
+    );
+    const [here, there] = [1, -1].map((sign) =>
+      shadeNormals(
+        second,
+        Float32Array.from(NORMAL, (part) => sign * part),
+      ),
+    );
+    return here.every((value, at) => Math.abs(value - there[at]) < 1e-6) ? "same value" : "opposite value";
+  }),
+  claim("orders", "their sum [stays the same|changes]", () =>
+    [-0.6, 0.6].every((constant) => numberOf(`orders&constant=${constant}`, "change") < 1e-6)
+      ? "stays the same"
+      : "changes",
+  ),
+  claim("orders", "[Two balls change|One ball changes], and their sum", () => {
+    const [none, much] = [0, 0.6].map((constant) => figure(`orders&constant=${constant}`));
+    const changed = ["order0", "order1", "order2"].filter((key) => Math.abs(none[key] - much[key]) > 0.1);
+    return changed.length === 2 ? "Two balls change" : "One ball changes";
+  }),
+  claim("orders", "The curve for the intensity falls [below|above] zero in the shadow", () =>
+    numberOf("orders&around=0.02", "least") < 0 ? "below" : "above",
+  ),
+  claim("orders", "the curve for the logarithm stays [above|below] it", () =>
+    numberOf("orders&around=0.02", "leastLog") > 0 ? "above" : "below",
+  ),
+  claim("orders", "The error of the nine numbers for the logarithm [falls|rises]", () =>
+    change(numberOf("orders&around=0.02", "byLog"), numberOf("orders&around=0.5", "byLog"), ["rises", "falls"]),
+  ),
+  claim("orders", "under a single lamp in the dark its error is [larger|smaller]", () =>
+    change(numberOf("orders&around=0.02", "direct"), numberOf("orders&around=0.02", "byLog"), ["larger", "smaller"]),
+  ),
+  claim("orders", "restores every intensity?\n[It is added to the three squares|No change can]", () =>
+    ["order0", "order2"].every(
+      (key) => Math.abs(numberOf("orders&constant=0.6", key) - numberOf("orders", key)) > 0.1,
+    ) && numberOf("orders&constant=0.6", "change") < 1e-6
+      ? "It is added to the three squares"
+      : "No change can",
+  ),
+  claim("orders", "Its part of degree 3 is [zero|large]", () =>
+    numberOf("orders", "degree3") < 1e-4 ? "zero" : "large",
+  ),
+  claim("orders", "a large part of degree 1 and a [smaller|larger] one of degree 2", () =>
+    change(numberOf("orders", "degree1"), numberOf("orders", "degree2"), ["larger", "smaller"]),
+  ),
+  claim("orders", "all higher ones together are [small|large]", () =>
+    numberOf("orders", "byDegree") / 100 < 0.3 * numberOf("orders", "degree2") ? "small" : "large",
+  ),
+  claim("orders", "The curve of degree 3 stays at [zero|one]", () =>
+    numberOf("orders", "degree3") < 1e-4 ? "zero" : "one",
+  ),
+  claim("orders", "the one of this figure leaves [#] %", () => numberOf("orders", "direct")),
+  claim("orders", "together come within [#] % of the cosine", () => numberOf("orders", "byDegree")),
 ];

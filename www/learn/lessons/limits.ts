@@ -16,11 +16,11 @@ export const paint: Lesson = {
   text: [
     "Print is not shape. A model with a single albedo would interpret every painted edge as a fold. So once the pose has converged, the program tests whether a few different albedos explain the picture better: each pixel has the shading of its measured normal plus one of a few offsets {aj}, one number for each colour. Another albedo is kept only if it explains the picture better than its additional numbers would by chance.",
     "Chromaticity, the ratio of red, green and blue whatever the brightness, decides: coloured paint changes red, green and blue by different amounts, while shading under whitish light changes them almost equally. Grey paint is harder to separate, and any paint is harder to separate under light of many colours.",
-    "A cast shadow violates the model, because the light there is different. But a shadow that darkens red, green and blue by the same factor has the same effect on a pixel as dark paint, so the program takes nearly all of it for albedo. The remainder {ej} is largest where the shadow meets the outline of the object, and robust weights reduce the influence of the pixels there. Along the edge of the shadow on the face it is small. The estimated albedo then follows the shadow as well as the paint, and the status does not warn of it.",
+    "A cast shadow violates the model, because the light there is different. But a shadow that darkens red, green and blue by the same factor has the same effect on a pixel as dark paint, so the program takes nearly all of it for albedo. The remainder {ej} is largest where the shadow meets the silhouette of the object, and robust weights reduce the influence of the pixels there. Along the edge of the shadow on the face it is small. The estimated albedo then follows the shadow as well as the paint, and the status does not warn of it.",
   ],
   tasks: [
     "Raise the strength of the paint. It appears in the albedo and disappears from the shading.",
-    "Remove the paint and deepen the shadow. Nearly all of it appears in the albedo. The remainder is bright only where the shadow meets the outline.",
+    "Remove the paint and deepen the shadow. Nearly all of it appears in the albedo. The remainder is bright only where the shadow meets the silhouette.",
     "Deepen the shadow with the paint at 0.8. The correlation of albedo and paint falls, but the status is still converged.",
     "Choose the coloured lamps. Chromaticity is now less informative: the correlation of albedo and paint falls from 0.896 to 0.857.",
   ],
