@@ -302,7 +302,7 @@ test("10, 11: a curve's axes stand still from its first drawing to its last", LO
     }).observe(document, { childList: true, subtree: true });
   });
   for (const [state, points] of [
-    ["prior", 8],
+    ["prior&share=20", 8],
     ["pose&offset=40", 13],
     ["pose&light=colourful", 13],
     ["pose&light=overcast", 13],

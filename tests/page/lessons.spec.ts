@@ -48,7 +48,8 @@ test("numbers that the text states of the method are the method's own", LONG, as
   await open(page, "at=colours");
   await expect(page.locator(".learn-text")).toContainText(`compares ${constant("DIRECTIONS")} directions`);
   await page.goto("./#learn&at=exercises");
-  await answers(page, `beyond about ${((constant("PRIOR_SCALE") * 180) / Math.PI).toFixed(0)}°`);
+  const ignored = ((constant("PRIOR_SCALE") * 180) / Math.PI).toFixed(0);
+  await answers(page, `beyond about ${ignored}°`);
   const { OPTIONS } = (await import("../../pkg/options.js")) as {
     OPTIONS: {
       lambda: { members: { prior: { default: number } } };
@@ -58,6 +59,8 @@ test("numbers that the text states of the method are the method's own", LONG, as
   };
   await answers(page, `ambiguous once sigma exceeds ${OPTIONS.tolerance.default}°`);
   await answers(page, `the program uses ${OPTIONS.lambda.members.prior.default} against`);
+  await open(page, "at=loop");
+  await expect(page.locator(".learn-text")).toContainText(`more than about ${ignored}° off is ignored`);
   await open(page, "at=pose");
   await expect(page.locator(".learn-text")).toContainText(
     `turn at most ${OPTIONS.startTolerance.members.degrees.default}° from this given pose`,

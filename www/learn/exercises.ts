@@ -35,7 +35,7 @@ export const exercises: readonly Exercise[] = [
       "Both pictures have 3 % noise. Compare the mean errors of the normals, and explain the difference by the shapes of the two cost maps.",
     answer: [
       "The coloured lamps leave a few small dark spots. The three curves of equal intensity cross at large angles, so noise moves the crossing only a little. Under the window light the three colours change almost in proportion, so the curves almost coincide. The valley is long and flat, and noise moves its lowest point far along it.",
-      "In numbers: the Gauss-Newton matrix of the pixel is the sum over the colours of each gradient times its transpose, and the variance of the normal is that of the noise divided by the smallest eigenvalue. With three nearly parallel gradients that eigenvalue is nearly zero.",
+      "In numbers: near its minimum, the cost rises like a quadratic form of the step. The matrix of that form, the Gauss-Newton matrix, is the sum over the colours of each gradient times its transpose, and the variance of the normal is that of the noise divided by the smallest eigenvalue. With three nearly parallel gradients that eigenvalue is nearly zero.",
     ],
   },
   {
@@ -61,7 +61,7 @@ export const exercises: readonly Exercise[] = [
       "Raise λ from the left until the pixel has a single minimum. Note λ and how far the solver ends from the truth. Repeat with the pose 20° off, and then with the robust prior. Which λ would you choose for a loop that starts with a wrong pose?",
     answer: [
       "In both states a single minimum is left from about λ = 0.02. With the right pose the prior is 3.0° off, and so the solver ends near the true normal at every λ: 1.9° off at 0.001, 2.2° at 0.05, 2.8° at 10. With the pose 20° off the prior is 23° off. The solver then ends 2.4° off at 0.001, but 11° at 0.05, and at 10 the pixel simply repeats the prior.",
-      "So with a wrong pose the smallest λ is the best one. At 0.001 the pixel still has several minima, but the solver starts at the prior and descends to the one near the true normal. The robust prior loses its influence only beyond about 23°, so here it helps a little: 7.3° off at 0.05.",
+      "So with a wrong pose the smallest λ is the best one for this pixel. At 0.001 the pixel still has several minima, but the solver starts at the prior and descends to the one near the true normal. The robust prior loses its influence only beyond about 23°, so here it helps a little: 7.3° off at 0.05.",
       `For the loop, the program uses ${OPTIONS.lambda.members.prior.default} against squared log residuals. It can, because it registers the depth map before it solves the pixels, so the prior is nearly right by then.`,
     ],
   },

@@ -80,10 +80,13 @@ export class Guesses {
     };
     const reveal = (given: number) => {
       empty();
+      // A search takes seconds.
+      noted.append(phrase("figure.computing", "Computing"));
       // The answer is about the state of the question, even if the visitor has moved something since.
       this.#hooks.set(guess.at);
       this.#hooks.reveal(guess.reveal, () => {
         this.#waiting = (drawing, values) => {
+          noted.replaceChildren();
           answer.dataset.right = String(isRight(guess, given, drawing, values));
           answer.replaceChildren(...verdict(guess, given, drawing, values));
         };

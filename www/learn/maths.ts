@@ -35,6 +35,7 @@ export const squared = (...inside: Element[]): Element => row(mo("("), ...inside
 export const norm = (inside: Element): Element => row(mo("||"), inside, sup(mo("||"), mn("2")));
 /** The prime of a text font is raised by itself; as an exponent it would be raised twice. */
 export const primed = (base: Element): Element => row(base, math("mtext", { class: "learn-prime" }, "′"));
+export const changeOf = (quantity: Element): Element => row(math("mtext", {}, "Δ"), quantity);
 /** The sign of a transposed vector, as a letter that every font has. */
 export const transposed = (base: Element): Element => sup(base, math("mi", { mathvariant: "normal" }, "T"));
 
@@ -141,8 +142,8 @@ export const block = (...children: Element[]): Element => math("math", { display
 export const lines = (...blocks: Element[]): Element => make("div", {}, ...blocks);
 
 /**
- * A sentence in which {n} is the symbol n, {−n_x} its negative component along x, {z′} a primed z, {link|address} a link, and {=key} the
- * value of the control with that key, which can be dragged.
+ * A sentence in which {n} is the symbol n, {−n_x} its negative component along x, {Δz} a change of z, {z′} a primed z, {link|address} a
+ * link, and {=key} the value of the control with that key, which can be dragged.
  */
 export function sentence(words: string): (Node | string)[] {
   return words.split(/(\{[^}]+\})/).map((part) => {
@@ -157,10 +158,11 @@ export function sentence(words: string): (Node | string)[] {
       });
     const [label = "", address] = inside.split("|");
     if (address !== undefined) return make("a", { href: address }, label);
-    const [, minus, name = "", prime, index] = /^(−?)([^_′]+)(′?)(?:_(.+))?$/.exec(inside) ?? [];
+    const [, sign, name = "", prime, index] = /^([−Δ]?)([^_′]+)(′?)(?:_(.+))?$/.exec(inside) ?? [];
     if (!(name in SYMBOLS)) return inside;
     const plain = symbol(name as SymbolName);
     const drawn = prime ? primed(plain) : plain;
-    return inline(...(minus ? [mo(minus)] : []), index ? sub(drawn, mi(index)) : drawn);
+    const whole = index ? sub(drawn, mi(index)) : drawn;
+    return inline(...(sign === "Δ" ? [changeOf(whole)] : sign ? [mo(sign), whole] : [whole]));
   });
 }

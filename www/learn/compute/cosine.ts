@@ -43,7 +43,7 @@ export function plotOfLamp(around: number): PlotPanel {
     "intensity",
     [
       { name: "true", ink: "truth", points: curve(intensity) },
-      { name: "nine for the intensity", ink: "colour", points: curve(direct) },
+      { name: "nine for the intensity", ink: "intensity", points: curve(direct) },
       { name: "nine for its logarithm", ink: "light", points: curve(byLog) },
     ],
     { range: [-0.1, 1.2] },
@@ -64,7 +64,7 @@ export function plotOfDegrees(): PlotPanel {
     "intensity",
     [
       { name: "clamped cosine", ink: "truth", points: curve(cosine.intensity) },
-      { name: "0 to 2 together", ink: "colour", points: curve(cosine.direct) },
+      { name: "0 to 2 together", ink: "intensity", points: curve(cosine.direct) },
       ...degreesOf(cosine).map((part, degree) => ({
         name: `degree ${degree}`,
         ink: INKS[degree] ?? "truth",

@@ -35,9 +35,10 @@ const maskOf = (normals: Float32Array): Uint8Array =>
 /** Radius of the ball as a share of half the picture. */
 export const BALL = 0.92;
 
-function ball(side: number): Shape {
-  const normals = ballNormals(side, BALL);
-  const radius = (BALL * side) / 2;
+/** A ball whose radius is this share of half the picture. */
+export function ball(side: number, share = BALL): Shape {
+  const normals = ballNormals(side, share);
+  const radius = (share * side) / 2;
   const depth = Float32Array.from({ length: side * side }, (_, index) => radius * (normals[3 * index + 2] ?? NaN));
   return { width: side, height: side, normals, depth, mask: maskOf(normals) };
 }

@@ -28,7 +28,7 @@ const COLUMNS = 5;
 
 export function landscapeOf(
   request: PixelLandscapeRequest,
-  words: { key?: string; title?: string; truth?: ArrayLike<number>; curves?: Mark[] } = {},
+  words: { key?: string; title?: string; truth?: ArrayLike<number>; curves?: Mark[]; hasSteps?: boolean } = {},
 ): Landscape {
   const found = pixelLandscape({ side: SIDE, ...request });
   const distances = found.objective.map((value) => Math.sqrt(value));
@@ -50,14 +50,13 @@ export function landscapeOf(
       details: { minima: minima.length },
       legend: words.curves
         ? "line: explains one colour; dark: explains all; dots: minima; cross: truth"
-        : "dark: explains the pixel; dots: minima; cross: truth; line: solver",
+        : `dark: explains the pixel; dots: minima; cross: truth${words.hasSteps ? "; line: solver" : ""}`,
     },
     { width: SIDE, height: SIDE },
     distances,
     { min: 0, max: MOST_SHOWN },
     "viridis",
-    // The curves take the place of the solver's steps, which would be one line too many.
-    [...(words.curves ?? pathOf(found)), ...marksOf(minima, request, words.truth)],
+    [...(words.curves ?? []), ...(words.hasSteps ? pathOf(found) : []), ...marksOf(minima, request, words.truth)],
   );
   return {
     panel,

@@ -25,7 +25,7 @@ export function* loop(values: Values): Generator<Drawing> {
       start: known ?? [0, 0, -1],
       ...(known ? { prior: known } : {}),
     },
-    { truth },
+    { truth, hasSteps: true },
   );
   const ring = [{ ink: "pixel", shape: "ring", points: atPixel(chosen, grid), size: 3 } as const];
   yield {

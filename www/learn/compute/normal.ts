@@ -4,13 +4,17 @@ import { shadeLamp } from "../../../pkg/index.js";
 import { normalColour } from "../../draw/colours";
 import type { Drawing, Mark, Values } from "../protocol";
 import { atPixel, normalsOf } from "./draw";
-import { SIDE, degreesOf, onBall, shaded, shapeNamed, type Shape } from "./lamp";
+import { SIDE, ball, degreesOf, onBall, shaded, shapeNamed, type Shape } from "./lamp";
 import { numberOf, pixelAt, scene, vectorAt } from "./scenes";
 
 /** Above the left shoulder of the camera, so that all visible forms are lit. */
 const LAMP = [-0.4, -0.45, -0.8];
 /** Length of an arrow that is seen from the side, as a share of the picture. */
 const ARROW = 0.22;
+/** The ball leaves room for the arrow on its edge, which is as much shorter. */
+const BALL = { radius: 0.7, arrow: 0.15 };
+/** Longitudes of the dots on the ball's equator, which show how it turns, degrees. */
+const DOTS = [-150, -120, -70, -10, 20, 80, 140];
 const HEAD = 0.05;
 
 /** A surface that is turned about its upright axis: the view of the depth camera. */
@@ -22,8 +26,8 @@ function turnedShape(name: string, beta: number): Shape {
 }
 
 /** A normal that starts at a place, foreshortened as the camera sees it. */
-function arrow([x, y]: [number, number], [nx, ny]: readonly [number, number, number]): Mark[] {
-  const [tipX, tipY] = [x + ARROW * nx, y + ARROW * ny];
+function arrow([x, y]: [number, number], [nx, ny]: readonly [number, number, number], reach: number): Mark[] {
+  const [tipX, tipY] = [x + reach * nx, y + reach * ny];
   const length = Math.hypot(nx, ny);
   const head = (side: 1 | -1): [number, number] => {
     const bearing = Math.atan2(ny, nx) + side * 2.6;
@@ -35,9 +39,17 @@ function arrow([x, y]: [number, number], [nx, ny]: readonly [number, number, num
   ];
 }
 
+/** The dots of the ball's front after a turn. */
+function dotsOf(turn: number): Mark[] {
+  const bearings = DOTS.map((longitude) => ((longitude + turn) * Math.PI) / 180).filter((each) => Math.cos(each) > 0.1);
+  const points = bearings.flatMap((bearing) => [(1 + BALL.radius * Math.sin(bearing)) / 2, 0.5]);
+  return [{ ink: "truth", shape: "dot", points, size: 1.6 }];
+}
+
 export function* normal(values: Values): Generator<Drawing> {
   const name = String(values.surface);
-  const shape = name === "ball" ? shapeNamed("ball") : turnedShape(name, numberOf(values, "turn"));
+  const [isBall, turn] = [name === "ball", numberOf(values, "turn")];
+  const shape = isBall ? ball(SIDE, BALL.radius) : turnedShape(name, turn);
   const chosen = pixelAt(shape.mask, shape.width, shape.height, numberOf(values, "px"), numberOf(values, "py"));
   const one = vectorAt(shape.normals, chosen);
   const colour = normalColour(...one).map(Math.round) as [number, number, number];
@@ -55,7 +67,7 @@ export function* normal(values: Values): Generator<Drawing> {
         },
         shape,
         shadeLamp(LAMP, shape.normals),
-        arrow(place, one),
+        [...(isBall ? dotsOf(turn) : []), ...arrow(place, one, isBall ? BALL.arrow : ARROW)],
       ),
       normalsOf(
         { key: "map", title: "Its normal map", alt: "The same surface, each pixel in the colour of its normal." },

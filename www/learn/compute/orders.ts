@@ -29,7 +29,7 @@ function part(light: Float64Array, order: 0 | 1 | 2, constant: number, of: Float
 const total = (parts: readonly Float32Array[]): Float32Array =>
   (parts[0] ?? new Float32Array()).map((value, at) => value + (parts[1]?.[at] ?? NaN) + (parts[2]?.[at] ?? NaN));
 
-const ALT = ["the same everywhere", "bright on one side", "the same on opposite sides"] as const;
+const ALT = ["the same everywhere", "bright on one side", "the same on the hidden back, mirrored"] as const;
 
 export function* orders(values: Values): Generator<Drawing> {
   const light = lightNamed(String(values.light));

@@ -60,8 +60,12 @@ export function* paint(values: Values): Generator<Drawing> {
   const grid = made.image;
   const exp = (log: Float32Array) => log.map(Math.exp);
   const isShadow = (index: number) => shadow[index] === 1;
-  // The shadow's outermost pixels along each row, and their neighbours in the light.
+  // The shadow's outermost pixels along each row with their neighbours in the light, and pixels near the silhouette.
   const isRim = (index: number) => shadow[index] !== shadow[index - 1] || shadow[index] !== shadow[index + 1];
+  const isNearSilhouette = (index: number, within: number) =>
+    [1, grid.width - 1, grid.width, grid.width + 1].some(
+      (step) => !grid.mask?.[index - within * step] || !grid.mask?.[index + within * step],
+    );
   for (const estimator of running(pair, { start: made.pose, scale: 1, registration: "fixed" }, 12)) {
     const { report } = estimator;
     const [albedo, shading, residual] = [estimator.albedo(), estimator.shading(), estimator.residual()];
@@ -111,8 +115,9 @@ export function* paint(values: Values): Generator<Drawing> {
         likeness: strength > 0 && hasPaint ? correlation(albedo, paint) : NaN,
         lit: meanOf(residual, (index) => !isShadow(index)),
         shaded: darkness > 0 ? meanOf(residual, isShadow) : NaN,
-        rim: darkness > 0 ? meanOf(residual, isRim) : NaN,
-        inside: darkness > 0 ? meanOf(residual, (index) => isShadow(index) && !isRim(index)) : NaN,
+        rim: darkness > 0 ? meanOf(residual, (index) => isRim(index) && !isNearSilhouette(index, 6)) : NaN,
+        silhouette: darkness > 0 ? meanOf(residual, (index) => isShadow(index) && isNearSilhouette(index, 2)) : NaN,
+        inside: darkness > 0 ? meanOf(residual, (index) => isShadow(index) && !isNearSilhouette(index, 6)) : NaN,
         taken: darkness > 0 ? (100 * contrast(albedo, paint, isShadow)) / Math.log(1 - darkness) : NaN,
         degrees: normalDegrees(estimator.imageNormals(), made.truth.imageNormals),
       },

@@ -21,6 +21,9 @@ const [TO_LIGHT, TO_SURFACE] = [1, 3];
 export const picture = (values: Values): Sample =>
   scene({ surface: "bust", light: String(values.light), size: SIZE, angles: { beta: BETA }, noise: 0.01 });
 
+/** The curves as far as they are known, which depend on the light alone. */
+const curves = new WeakMap<Sample, number[]>();
+
 const middles = new WeakMap<Sample, number[]>();
 /** The middle of the depth map's points in the camera's frame, under the true pose. */
 function middleOf(made: Sample): number[] {
@@ -82,24 +85,24 @@ export const held = (made: Sample, offset: number): State =>
 export function* pose(values: Values): Generator<Drawing> {
   const made = picture(values);
   const offset = numberOf(values, "offset");
-  const curve: number[] = [];
+  const curve = curves.get(made) ?? [];
+  curves.set(made, curve);
   let state = held(made, offset);
   const draw = (): Drawing => drawing(values, made, state, curve);
   yield draw();
   const run = String(values.run);
-  if (run === "hold") {
-    for (const each of OFFSETS) {
-      curve.push(
-        each,
-        afterStages(made, told(made, each, "fixed"), TO_LIGHT, (estimator) => estimator.report.residual),
-      );
+  if (run !== "hold") {
+    const options: Options = run === "search" ? { scale: 1 } : told(made, offset, "joint");
+    for (const { estimator, status } of watched(made, options)) {
+      state = stateOf(estimator, status);
       yield draw();
     }
-    return;
   }
-  const options: Options = run === "search" ? { scale: 1 } : told(made, offset, "joint");
-  for (const { estimator, status } of watched(made, options)) {
-    state = stateOf(estimator, status);
+  for (const each of OFFSETS.slice(curve.length / 2)) {
+    curve.push(
+      each,
+      afterStages(made, told(made, each, "fixed"), TO_LIGHT, (estimator) => estimator.report.residual),
+    );
     yield draw();
   }
 }
@@ -107,6 +110,9 @@ export function* pose(values: Values): Generator<Drawing> {
 function drawing(values: Values, made: Sample, state: State, curve: number[]): Drawing {
   const grid = made.image;
   const error = degreesBetween(state.rotation, made.pose.rotation);
+  const offset = numberOf(values, "offset");
+  // A run may leave the axis of the curve, and then only the size of its error is drawn, on the side where it began.
+  const at = String(values.run) === "hold" ? offset : error * (offset < 0 ? -1 : 1);
   const panels: Drawing["panels"] = [
     pictureOf({ key: "picture", title: "The picture", alt: "A bust." }, grid, made.image.data as Float32Array),
     state.panel,
@@ -123,20 +129,22 @@ function drawing(values: Values, made: Sample, state: State, curve: number[]): D
       "magma",
     ),
   ];
-  if (String(values.run) === "hold") {
-    panels.push(
-      plot(
-        {
-          key: "curve",
-          title: "Residual against the error of the pose",
-          alt: "The residual is smallest where the pose is right.",
-        },
-        "error, °",
-        "residual",
-        [{ name: "residual", ink: "pose", points: [...curve], dots: true }],
-        { at: numberOf(values, "offset"), domain: ENDS, range: [0, MOST_RESIDUAL[String(values.light)] ?? 1] },
-      ),
-    );
-  }
+  panels.push(
+    plot(
+      {
+        key: "curve",
+        title: "Residual against the error of the pose",
+        alt: "The residual is smallest where the pose is right.",
+      },
+      "error, °",
+      "residual",
+      [{ name: "residual", ink: "pose", points: [...curve], dots: true }],
+      {
+        domain: ENDS,
+        range: [0, MOST_RESIDUAL[String(values.light)] ?? 1],
+        ...(Math.abs(at) <= ENDS[1] ? { at } : {}),
+      },
+    ),
+  );
   return { panels, numbers: { error, residual: meanOf([state.explained]) }, ...wordsOf(state.status) };
 }

@@ -114,7 +114,8 @@ export function* prior(values: Values): Generator<Drawing> {
     numbers: { degrees, others, depth, pixels: none ? 0 : mask.filter(Boolean).length },
   });
   yield drawing();
-  for (const each of SHARES) {
+  // Until a share is given, the rest of the curve would answer the question of the lesson.
+  for (const each of share === 0 ? [0] : SHARES) {
     curve.push(each, each === share ? degrees : solved(values, each).degrees);
     yield drawing();
   }

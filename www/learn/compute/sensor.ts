@@ -48,6 +48,7 @@ export function* sensor(values: Values): Generator<Drawing> {
     const measuredOnly = refined.map((value, index) => (Number.isFinite(measured[index]) ? value : NaN));
     const filled = refined.filter((value, index) => holesAt(index) && Number.isFinite(value)).length;
     const all = measured.filter((_, index) => holesAt(index)).length;
+    const known = measured.filter(Number.isFinite).length;
     const off = (depth: ArrayLike<number>) =>
       alongRow(
         Array.from(depth, (value) => value - middle),
@@ -92,6 +93,7 @@ export function* sensor(values: Values): Generator<Drawing> {
         after: rms(measuredOnly, made.truth.depth),
         normalsBefore: normalDegrees(raw, made.truth.depthNormals),
         normalsAfter: normalDegrees(normals, made.truth.depthNormals),
+        kept: (100 * measuredOnly.filter(Number.isFinite).length) / known,
         filled: all === 0 ? NaN : (100 * filled) / all,
       },
       ...wordsOf(statusOf("iteration", { iteration: estimator.report.iteration })),

@@ -87,13 +87,15 @@ function sampled(values: Float32Array, [x = NaN, y = NaN]: number[]): number {
   return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d);
 }
 
-/** Found and true heights along the strip that has the median error among those that lead far enough, beginning at the spot. */
-function profile(strips: number[][][], spot: number, heightAt: (point: number[]) => number): PlotPanel["series"] {
-  const errorOf = (strip: number[][]) => middleOf(strip.map((point) => Math.abs(-(point[2] ?? NaN) - heightAt(point))));
-  const sorted = strips.map((strip) => ({ strip, error: errorOf(strip) })).sort((a, b) => a.error - b.error);
-  const long = sorted.filter(({ strip }) => wayOf(strip.at(-1) ?? [], spot) > BESIDE);
-  const shown = long.length > 0 ? long : sorted;
-  const chosen = shown[Math.floor(shown.length / 2)]?.strip ?? [];
+/** The strip whose error farther away is nearest to the one that the figure reports; any strip if none leads so far. */
+function typical(strips: number[][][], far: number, errorFar: (strip: number[][]) => number): number[][] {
+  const apart = (strip: number[][]) => Math.abs(errorFar(strip) - far);
+  const long = strips.filter((strip) => Number.isFinite(apart(strip))).sort((a, b) => apart(a) - apart(b));
+  return long[0] ?? strips[0] ?? [];
+}
+
+/** Found and true heights along a strip, beginning at the spot. */
+function profile(chosen: number[][], heightAt: (point: number[]) => number): PlotPanel["series"] {
   const [start] = chosen;
   if (!start) return [];
   let way = 0;
@@ -121,7 +123,7 @@ function reflectanceMap(lamp: number[], brightness: number, truth: readonly [num
       key: "map",
       title: "Reflectance map R(p, q)",
       alt: "Intensity for every pair of slopes. One line has the intensity of the chosen pixel; a cross marks its true slopes.",
-      legend: "line: slopes with the pixel's intensity; cross: the true ones",
+      legend: "across: p; down: q; line: the pixel's intensity; cross: the truth",
     },
     { width: SIDE, height: SIDE },
     grey(values),
@@ -142,11 +144,14 @@ export function* strips(values: Values): Generator<Drawing> {
   const heightAt = (point: number[]) => origin - sampled(shape.depth, point);
   const points = all.flat();
   const errorOf = (point: number[]) => Math.abs(-(point[2] ?? NaN) - heightAt(point));
-  const lines = all.flatMap((strip) => [
+  const lineOf = (strip: number[][]) => [
     ...strip.flatMap(([x = NaN, y = NaN]) => [(x + 0.5) / SIDE, (y + 0.5) / SIDE]),
     NaN,
     NaN,
-  ]);
+  ];
+  const errorFar = (each: number[][]) => middleOf(each.filter((point) => wayOf(point, spot) > BESIDE).map(errorOf));
+  const far = errorFar(points);
+  const plotted = typical(all, far, errorFar);
   const brightness = intensity[pixel] ?? NaN;
   const truth = vectorAt(shape.normals, pixel);
   yield {
@@ -156,13 +161,16 @@ export function* strips(values: Values): Generator<Drawing> {
           key: "picture",
           title: "The bust under one lamp",
           alt: "A bust under one lamp, with strips that run outward from a bright spot.",
-          legend: found ? "drag to choose the pixel; lines: strips" : "no surface near this spot faces the lamp",
+          legend: found
+            ? "drag to choose the pixel; thick line: the plotted strip"
+            : "no surface near this spot faces the lamp",
           ...(found ? {} : { state: "none" }),
         },
         shape,
         intensity,
         [
-          { ink: "normal", shape: "line", points: lines, isFine: true },
+          { ink: "normal", shape: "line", points: all.flatMap(lineOf), isFine: true },
+          { ink: "normal", shape: "line", points: lineOf(plotted) },
           { ink: "normal", shape: "dot", points: atPixel(spot, shape), size: 1.6 },
           { ink: "pixel", shape: "ring", points: atPixel(pixel, shape), size: 3 },
         ],
@@ -179,10 +187,10 @@ export function* strips(values: Values): Generator<Drawing> {
         ],
       },
       plot(
-        { key: "along", title: "Along one strip", alt: "Heights along one strip: true and found." },
+        { key: "along", title: "Along the thick strip", alt: "Heights along the thick strip: true and found." },
         "way, px",
         "height, px",
-        profile(all, spot, heightAt),
+        profile(plotted, heightAt),
       ),
     ],
     numbers: {
@@ -192,7 +200,8 @@ export function* strips(values: Values): Generator<Drawing> {
       off: Math.abs((shadeLamp(lamp, Float32Array.from(truth))[0] ?? NaN) - brightness),
       curve: contour(shadeLamp(lamp, slopes), SIDE, SIDE, brightness).length / 6,
       near: middleOf(all.flatMap((strip) => strip.filter((point) => wayOf(point, spot) <= BESIDE).map(errorOf))),
-      far: middleOf(all.flatMap((strip) => strip.filter((point) => wayOf(point, spot) > BESIDE).map(errorOf))),
+      far,
+      plotted: errorFar(plotted),
     },
   };
 }

@@ -1,14 +1,14 @@
 /** Lessons 3 and 4: the ambiguity of one picture, and classical shape from shading under one lamp. */
 
 import type { Lesson } from "../lesson";
-import { block, comma, gradient, lines, mo, primed, row, symbol, type SymbolName } from "../maths";
+import { block, changeOf, comma, gradient, lines, mo, primed, row, symbol, type SymbolName } from "../maths";
 import { decimals } from "../digits";
 import { stretchOf } from "../stretch";
 import { lampSliders } from "./first";
 
 const pair = (make: (name: SymbolName) => Element, first: SymbolName, second: SymbolName) =>
   row(mo("("), make(first), mo(","), make(second), mo(")"));
-const change = (name: SymbolName) => primed(symbol(name));
+const change = (name: SymbolName) => changeOf(symbol(name));
 
 export const relief: Lesson = {
   id: "relief",
@@ -31,9 +31,9 @@ export const relief: Lesson = {
   formulaWords: "The new depth is s times the depth plus t times x, and the new intensity is the old one.",
   text: [
     "Sculptors of coins and medals have always known it: a portrait a few millimetres deep looks like a whole head. Multiply all depths {z} by a factor {s}, here {=stretch}, and add a tilt: a depth that grows by {t} with each step {x} to the right. In this formula a prime marks the other surface and its picture: its depth is {z′}, and its intensity {E′} is to be the old {E}. The plot shows a cross-section of both surfaces as heights: a height is a depth with the opposite sign.",
-    "Every normal changes, and yet a lamp in another place, together with another albedo, restores the picture pixel by pixel. This is the bas-relief ambiguity. It holds for any factor {s} and any tilt {t}, for one picture or a hundred under different lamps.",
-    "The reason is a matrix. Scale each normal by its albedo and call the result b: the length of b is the albedo, and the intensity is b·{l}, where the length of {l} is the strength of the lamp. For any invertible matrix A, the vectors A b and A⁻ᵀ {l} have the same product. The length of A b is the other surface's albedo; it changes from place to place, because A stretches vectors of different directions by different factors. Most matrices turn the normals into vectors that belong to no surface: along a loop, a closed path in the picture, their slopes do not add up to zero (lesson 9). Those that flatten, tilt or invert depth are the ones that leave a surface.",
-    "The most famous case is {s} = −1: near and far are exchanged, and a face becomes its mould. It needs no other albedo, only a lamp rotated by half a turn about the line of sight, because its matrix keeps every length. People see the mould of a face as a face, because they expect faces, and light from above.",
+    "Every normal changes, and yet a lamp in another place, together with another albedo, restores the picture pixel by pixel; the readout gives the root mean square (rms) of what differs. This is the bas-relief ambiguity. It holds for any factor {s} and any tilt {t}, for one picture or a hundred under different lamps.",
+    "The reason is a matrix. Scale each normal by its albedo and call the result b: the length of b is the albedo, and the intensity is b·{l}, where the length of {l} is the strength of the lamp. For any invertible matrix A, the vectors A b and A⁻ᵀ {l} have the same product. A normal is parallel to ({z_x}, {z_y}, −1), where an index names a derivative. So {z′} = {s}{z} is the matrix A = diag({s}, {s}, 1), and a tilt puts −{t} at its top right. The length of A b is the other surface's albedo; it changes from place to place, because A stretches vectors of different directions by different factors. Most other matrices turn the normals into vectors that belong to no surface: on a closed path the steps up and down must cancel, and theirs do not (lesson 9 meets such a contradiction).",
+    "The most famous case is {s} = −1: near and far are exchanged, and a face becomes its mould. It needs no other albedo, only a lamp rotated by half a turn about the line of sight, because its matrix keeps every length: diag(−1, −1, 1) is that half turn. The lamp here is 35° from the line of sight, so it moves by 70°. People see the mould of a face as a face, because they expect faces, and light from above.",
     "So a single picture does not determine a shape. Something else has to be known: the lamp, the albedo, the silhouette, or a depth map. From lesson 10 on, this page uses the depth map.",
   ],
   tasks: [
@@ -44,8 +44,8 @@ export const relief: Lesson = {
   ],
   tries: [
     { set: { lamp: 1, paint: 1, slope: 0, stretch: 1 }, sweep: { key: "stretch", to: 0.2 } },
-    { set: { stretch: 0.4, slope: 0, paint: 1, lamp: 0 } },
-    { set: { stretch: 0.4, slope: 0, lamp: 1, paint: 0 } },
+    { set: { stretch: 0.2, slope: 0, paint: 1, lamp: 0 } },
+    { set: { stretch: 0.2, slope: 0, lamp: 1, paint: 0 } },
     { set: { slope: 0, lamp: 1, paint: 1, stretch: -1 } },
   ],
   guesses: [
@@ -117,14 +117,14 @@ export const strips: Lesson = {
   text: [
     "Write the surface as a depth {z} that depends on the place {x}, {y} in the picture. Its slopes {p} and {q} say how fast the depth changes to the right and down; together they say the same as the normal. Under a known lamp, Lambert's law gives each pair of slopes an intensity. All pairs together are the reflectance map {map}, a picture whose axes are slopes.",
     "A pixel of intensity {E} has its slopes somewhere on one isophote of that map. This is the first line of the formula: one equation, two unknowns.",
-    "But neighbours have to fit together. Suppose that the slopes at one point are known, and take a small step. In this lesson, a prime marks the change of a quantity in that step: {x′} is the step to the right, and {p′} the change of the slope. Step in the picture along grad {map}, the direction in the map in which the intensity grows. Then the slopes change by grad {E}, the direction in the picture in which it grows, and that can be seen. This is the second line. It follows from the first: along {x}, {E_x} = {map_p}{p_x} + {map_q}{q_x}, and {q_x} = {p_y}, because both are the second derivative of {z} along {x} and {y}. So {E_x} is the change of {p} in the step ({map_p}, {map_q}). In the third line, the depth changes by each slope times the step along it. So place, slopes and depth are carried on, step by step, along a characteristic strip.",
-    "A strip starts at a bright spot. There the surface faces the lamp, so its slopes are known. The curvature of the picture gives that of the surface, except for its sign: the spot may be a bump or a dent.",
+    "But neighbours have to fit together. Suppose that the slopes at one point are known. One step then has four parts: (1) read grad {map} at these slopes, the direction in which the map grows brighter; (2) step so in the picture, by {Δx} and {Δy}; (3) read grad {E} there, the direction in which the picture grows brighter; (4) change the slopes so, by {Δp} and {Δq}. This is the second line. It follows from the first, where an index names a derivative: along {x}, {E_x} = {map_p}{p_x} + {map_q}{q_x}, and {q_x} = {p_y}, because both are the second derivative of {z} along {x} and {y}. So {E_x} is the change of {p} in the step ({map_p}, {map_q}). In the third line, the depth changes by each slope times the step along it. So place, slopes and depth are carried on, step by step, along a characteristic strip.",
+    "A strip starts at a bright spot. There the surface faces the lamp, so its slopes are known. But grad {map} is zero there, so the strips start on a small circle around the spot. Its slopes follow from the curvature of the surface, which that of the picture gives except for its sign: the spot may be a bump or a dent.",
     "Horn invented this in his thesis in 1970, the first computed shape from shading. Strips drift with noise and leave gaps, so later methods solve for all heights at once: his paper of 1989 computes heights and slopes together. Tests of such methods used the bust of Mozart; here, the built-in bust stands in for it.",
     "The method needs one lamp, known exactly, one albedo, and somebody who says whether the spot is a bump. It fails at a saddle, where the surface rises in one direction and falls in the other: strips part there, and the smallest error decides to which side they go.",
   ],
   tasks: [
     "Take the spot for a dent. The same picture now gives a wrong surface, and the error near the spot rises.",
-    "Start from the chin. Within the first 10 px the strips follow the surface; farther away they go astray.",
+    "Start from the throat, with the lamp in front. Within the first 10 px the strips follow the surface; farther away they go astray.",
     "Drag the pixel across the face. Its isophote in the reflectance map always runs through the cross, its true slopes.",
   ],
   tries: [

@@ -38,13 +38,13 @@ export const normal: Lesson = {
     "Turn the surface, now by {=turn}, and its normals turn with it. Point at the nose before and after: it is the same point of the bust, but its normal has another colour. Brightness plays no part in a normal map. The next lessons ask how much of it brightness reveals.",
   ],
   tasks: [
-    "Turn the bust to the right and back. The left cheek turns toward the camera, and its map becomes bluer.",
+    "Turn the bust to the right and back. The cheek on the left of the picture turns toward the camera, and its map becomes bluer.",
     "Choose the ball and walk across it. The arrow shrinks to a dot in the middle and is longest at the edge.",
-    "Turn the ball. Its map stays the same: in each pixel, another point of the ball now faces the same way.",
+    "Turn the ball. Its dots move, but its map stays the same: in each pixel, another point of the ball now faces the same way.",
   ],
   tries: [
     { set: { surface: "bust", px: 0.36, py: 0.56, turn: -40 }, sweep: { key: "turn", to: 40 } },
-    { set: { surface: "ball", py: 0.5, px: 0.05 }, sweep: { key: "px", to: 0.95 } },
+    { set: { surface: "ball", py: 0.5, px: 0.16 }, sweep: { key: "px", to: 0.84 } },
     { set: { surface: "ball", px: 0.4, py: 0.4, turn: -60 }, sweep: { key: "turn", to: 60 } },
   ],
   guesses: [
@@ -54,7 +54,7 @@ export const normal: Lesson = {
       at: { surface: "ball", px: 0.5, py: 0.5, turn: 0 },
       choices: ["Orange", "Turquoise", "Purple"],
       right: 1,
-      reveal: { set: { px: 0.22, py: 0.25 } },
+      reveal: { set: { px: 0.29, py: 0.31 } },
       answer: "Turquoise. Left leaves little red; up gives much green, and the part toward the camera adds blue.",
     },
   ],

@@ -14,15 +14,15 @@ export const paint: Lesson = {
   formula: () => block(log(symbol("S")), mo("="), symbol("aj"), mo("+"), shading(), mo("+"), symbol("ej")),
   formulaWords: "The log intensity of colour j is its log albedo plus its shading plus a remainder.",
   text: [
-    "Print is not shape. A model with a single albedo would interpret every painted edge as a fold. So once the pose has converged, the program tests whether a few different albedos explain the picture better: each pixel has the shading of its measured normal plus one of a few offsets {aj}, one number for each colour. The evidence in the picture decides how many albedos there are.",
+    "Print is not shape. A model with a single albedo would interpret every painted edge as a fold. So once the pose has converged, the program tests whether a few different albedos explain the picture better: each pixel has the shading of its measured normal plus one of a few offsets {aj}, one number for each colour. Another albedo is kept only if it explains the picture better than its additional numbers would by chance.",
     "Chromaticity, the ratio of red, green and blue whatever the brightness, decides: coloured paint changes red, green and blue by different amounts, while shading under whitish light changes them almost equally. Grey paint is harder to separate, and any paint is harder to separate under light of many colours.",
-    "A cast shadow violates the model, because the light there is different. But a shadow that darkens red, green and blue by the same factor has the same effect on a pixel as dark paint, so the program takes nearly all of it for albedo. The remainder {ej} is largest at the edge of the shadow, where robust weights reduce the influence of the pixels. The estimated albedo then follows the shadow as well as the paint, and the status does not warn of it.",
+    "A cast shadow violates the model, because the light there is different. But a shadow that darkens red, green and blue by the same factor has the same effect on a pixel as dark paint, so the program takes nearly all of it for albedo. The remainder {ej} is largest where the shadow meets the silhouette of the object, and robust weights reduce the influence of the pixels there. Along the edge of the shadow on the face it is small. The estimated albedo then follows the shadow as well as the paint, and the status does not warn of it.",
   ],
   tasks: [
     "Raise the strength of the paint. It appears in the albedo and disappears from the shading.",
-    "Remove the paint and deepen the shadow. Nearly all of it appears in the albedo, and its edge in the remainder.",
+    "Remove the paint and deepen the shadow. Nearly all of it appears in the albedo. The remainder is bright only where the shadow meets the silhouette.",
     "Deepen the shadow with the paint at 0.8. The correlation of albedo and paint falls, but the status is still converged.",
-    "Choose the coloured lamps. Chromaticity is now less informative, and the normals get worse.",
+    "Choose the coloured lamps. Chromaticity is now less informative: the correlation of albedo and paint falls from 0.896 to 0.857.",
   ],
   tries: [
     { set: { light: "window", shadow: 0, paint: 1 } },
@@ -89,14 +89,14 @@ export const failure: Lesson = {
   formulaWords:
     "The variance of the rotation is about the variance of the noise divided by the information that the scene contains about the rotation.",
   text: [
-    "Here nothing is given: light and pose are both unknown, and the search starts from scratch. The report at the end contains more than a pose: a status, a reason, a sigma of the rotation, and alternative poses that fit the image equally well. “Ambiguous” and “lost” do not mean that the pose is wrong. They mean that the data do not show that it is right.",
-    "Symmetry: a round object looks the same when it is rotated about its axis. No method can detect that rotation. Little overlap: if the depth map covers only a narrow strip, a few normals have to explain everything. Texture: fine print that changes from pixel to pixel hides the shading. A large turn: the cameras share less and less of the object, and they see the shared part at a grazing angle.",
-    "Compare the true error, which is known here because the scene is synthetic, with the reported sigma and status. Sigma is the size of error to expect; errors of two or three sigmas are rare but possible. It counts the noise, not what the model leaves out: a shadow that passes for albedo (lesson 14) can shift the result and stay unnoticed. Once the status is lost, sigma is only a lower bound: expect the error to be larger, even much larger. In the formula, {sigmaR} is the sigma of the rotation and {sigma} the noise of the picture. The information is the curvature of the sum of squares at its minimum: it says how fast the residual rises when the rotation changes. A good method is allowed to fail. It should not be confident when it does.",
-    "The reported sigma is that of the rotation about its least certain axis; the degrees quoted in a status are also one sigma. Above 1.5° the status is ambiguous, because two sigmas then exceed the 3° within which a pose counts as found. Above 5° it is lost: a rotation this uncertain is useless. Above 25° the rotation counts as not observable. Converged means that sigma is below 1.5°, no other pose fits as well, and the colours are explained; a wider overlap, a smaller turn, a less symmetric object or an initial pose help to get there. A status can have other reasons: it is ambiguous if other poses fit the image equally well, and lost if too much of the colours remains unexplained.",
+    "Here nothing is given: light and pose are both unknown, and the search starts from scratch. The report at the end contains more than a pose: a status, a reason, alternative poses that fit the image equally well, and a sigma of the rotation, the size of error to expect. In the formula, {sigmaR} is this sigma, {sigma} the noise of the picture, and the information says how fast the residual rises when the rotation changes: the curvature of the sum of squares at its minimum. “Ambiguous” and “lost” do not mean that the pose is wrong. They mean that the data do not show that it is right.",
+    "Symmetry: a round object looks the same when it is rotated about its axis. No method can detect that rotation; only a less symmetric object helps. Little overlap: if the depth map covers only a narrow strip, a few normals have to explain everything; a wider one helps. Texture: fine print that changes from pixel to pixel hides the shading; less print helps. A large turn: the cameras share less and less of the object, and they see the shared part at a grazing angle; a smaller turn helps.",
+    "Compare the true error, which is known here because the scene is synthetic, with the reported sigma and status. Errors of two or three sigmas are rare but possible. Sigma counts the noise, not what the model leaves out: a shadow that passes for albedo (lesson 14) can shift the result and stay unnoticed. Once the status is lost, sigma is only a lower bound: expect the error to be larger, even much larger. A good method is allowed to fail. It should not be confident when it does.",
+    "The reported sigma is that of the rotation about its least certain axis; the degrees quoted in a status are also one sigma. Above 1.5° the status is ambiguous, because two sigmas then exceed the 3° within which a pose counts as found. Above 5° it is lost: a rotation this uncertain is useless. Above 25° the rotation counts as not observable. Converged means that sigma is below 1.5°, no other pose fits as well, and the colours are explained. A status can have other reasons. It is ambiguous if other poses fit the image equally well, against which an initial pose helps, or if an initial pose was kept (lesson 11). It is lost if too much of the colours remains unexplained.",
   ],
   tasks: [
     "Remove the nose of the disc. At 100 % the rotation cannot be determined, and the report names the axis.",
-    "Make the depth map as narrow as possible. At 5 % of its width no pose fits, and the status is lost. Widen it to 10 %: now the status is converged, with a sigma of 0.46° instead of the 0.06° at full width.",
+    "Make the depth map as narrow as possible. At 5 % of its width no pose fits, and the status is lost. Widen it to 10 %: now the status is converged, with a sigma of 0.45° instead of the 0.06° at full width.",
     "Print texture on the object. Now, with the print at 100 %, more of the colour stays unexplained than with none, and the rotation is so uncertain that the status is lost. The report names the axis.",
     "Increase the rotation between the views. Here at 90° and with a narrow depth map, little remains to compare.",
   ],
@@ -108,7 +108,8 @@ export const failure: Lesson = {
   ],
   guesses: [
     {
-      question: "The disc loses its nose and is round. What will the report say about its pose?",
+      question:
+        "In the case “symmetry”, a disc of rings has a nose, which shows how it is rotated. It loses the nose. What will the report say about its pose?",
       before: 1,
       at: { case: "symmetry", amount: 0 },
       choices: ["Converged, with a small sigma", "Lost, and which rotation cannot be seen", "A wrong pose, converged"],

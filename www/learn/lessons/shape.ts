@@ -26,7 +26,7 @@ export const surface: Lesson = {
   formulaWords: "The slope of the depth z along x is minus n x over n z, and along y minus n y over n z.",
   text: [
     "A normal {n} fixes the slope of the depth {z} in both directions. The figure integrates the normals of a plate with a dome and a step. Integration finds the surface whose differences from pixel to pixel fit these slopes best in the least-squares sense. The absolute depth stays undetermined: adding a constant changes no slope.",
-    "Discontinuities: slopes are blind to a step. At a step, here of {=step}, the depth jumps between two pixels, and the normals of both are unaffected by it. If the step ends somewhere, a path around it gives its height, and the path across contradicts that. Least squares spreads the contradiction over the neighbours; robust weights identify the few pairs of pixels that do not fit and ignore them. If the step cuts the object in two, no path leads around it, and its height is undetermined: least squares then takes the surface without a step.",
+    "Discontinuities: slopes are blind to a step. At a step, here of {=step}, the depth jumps between two pixels, and the normals of both are unaffected by it. If the step ends somewhere, a path around it gives its height, and the path across contradicts that. Least squares spreads the contradiction over the neighbours; robust weights reduce the influence of a pair of pixels the worse it fits the surface found so far, and repeat, until the few pairs across the step hardly count. If the step cuts the object in two, no path leads around it, and its height is undetermined: least squares then takes the surface without a step.",
     "Bias: noise tilts normals at random, but the result is not only noisy. A slope is the tangent of a tilt, so a normal tilted too far adds more slope than a normal tilted too little removes. The errors do not cancel: steep flanks come out too steep, and the dome has more than 100 % of its true relief. Normals that would face away from the camera are clipped, which offsets part of the bias.",
   ],
   tasks: [
@@ -85,7 +85,7 @@ export const prior: Lesson = {
   formulaWords:
     "The cost of the colours plus lambda times the squared distance between the normal and the one that the depth map gives.",
   text: [
-    "A second camera measures depth. If its pose is known, each of its points lands on a pixel and brings a normal {m}. That normal enters the cost as a prior with the weight {lambda}: of all normals that explain the colours, choose one near {m}. So the depth map settles what a picture leaves open (lessons 3 and 7): a bump and a dent, or a head and its flat relief, share a picture but not a depth map. Its points also have what slopes lack, the absolute depth and the heights of steps; lesson 13 uses them.",
+    "A second camera measures depth. If its pose is known, that is, where it stands and how it is turned (lesson 11), each of its points lands on a pixel and brings a normal {m}. That normal enters the cost as a prior, an estimate made beforehand, with the weight {lambda}: of all normals that explain the colours, choose one near {m}. So the depth map settles what a picture leaves open (lessons 3 and 7): a bump and a dent, or a head and its flat relief, share a picture but not a depth map. Its points also have what slopes lack, the absolute depth and the heights of steps; lesson 13 uses them.",
     "The figure repeats an experiment of the paper whose method these lessons extend (its Figure 5). The light is known except for the exposure, one factor for the brightness of the whole picture; the picture has 2 % noise, and a share of the pixels, chosen at random, is given the true normal. All other pixels have only their colours.",
     "The surface improves with the share, at first more than proportionally. Pixels without a prior gain, too, because all pixels share the exposure, and a few given normals determine it.",
     "With too small a weight the prior is ignored; with a very large one the result copies the depth map and ignores the picture. Here the prior is perfect, so a large weight does no harm. A real depth map is noisy and lacks fine detail.",
@@ -113,7 +113,7 @@ export const prior: Lesson = {
   ],
   can: "You can explain how a depth map enters the estimate as a prior, and what its weight does.",
   controls: [
-    { kind: "slider", key: "share", label: "Pixels with a prior", min: 0, max: 100, step: 1, initial: 20, unit: "%" },
+    { kind: "slider", key: "share", label: "Pixels with a prior", min: 0, max: 100, step: 1, initial: 0, unit: "%" },
     {
       kind: "slider",
       key: "weight",
