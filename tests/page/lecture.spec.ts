@@ -159,10 +159,12 @@ test(
     await exercise(page).locator("button").nth(1).click();
     await expect(control(page, "offset")).toHaveValue("20");
     await page.keyboard.press("a");
+    await expect(exercise(page).locator("details p").first()).toBeVisible();
+    await page.keyboard.press("a");
+    await expect(exercise(page).locator("details p").first()).toBeHidden();
     await exercise(page).locator("summary").click();
     await expect(exercise(page).locator("details p").first()).toBeVisible();
     await page.keyboard.press("a");
-    await expect(exercise(page).locator("details")).toBeHidden();
     await expect(dialog(page).locator(".learn-figure")).toBeVisible();
     // The text of a lesson shows no exercise.
     await page.keyboard.press("Escape");

@@ -141,6 +141,15 @@ export class Slides {
     this.#slide?.ask(index);
   }
 
+  /** At an exercise, opens its answer or closes it; elsewhere, shows all answers or hides them. */
+  #answer(): void {
+    const fold = this.#holder.querySelector<HTMLDetailsElement>(".learn-asked[data-asked] details");
+    if (!fold) return this.#answers.toggle();
+    const isOpen = fold.open && !this.#answers.areHidden;
+    if (this.#answers.areHidden) this.#answers.toggle();
+    fold.open = !isOpen;
+  }
+
   /** The page as a whole, because no browser gives the screen to a dialog. Where it refuses, the slide stays in the window. */
   #fill(): void {
     if (document.fullscreenElement) void document.exitFullscreen();
@@ -153,7 +162,7 @@ export class Slides {
     if (!event.repeat && !within(TAKES_LETTERS)) {
       if (event.key === "f") return this.#fill();
       if (event.key === "q") return this.#ask();
-      if (event.key === "a") return this.#answers.toggle();
+      if (event.key === "a") return this.#answer();
     }
     const by = { ArrowRight: 1, PageDown: 1, ArrowLeft: -1, PageUp: -1 }[event.key] as 1 | -1 | undefined;
     if (by === undefined) return;
