@@ -140,6 +140,7 @@ for (const order of ["together", "the photograph first", "the depth map first"])
 test("in the slot for masks a mask of 16 bits is not said to be a depth map", async ({ lab, page }) => {
   await own(lab);
   await drop(page, "body", [colourPng(), depthPng()]);
+  await lab.reaches("ready");
   await put(
     lab,
     "Colour mask",
