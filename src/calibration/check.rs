@@ -15,6 +15,7 @@ use super::reason::{CheckReason, Warning, WarningKind};
 use super::registration::{ARRIVED, Findings, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start};
 use super::report::CheckReport;
 use super::rereading::Rereading;
+use super::reviewing::{Refining, Reviewing};
 use super::search;
 use super::sensitivity::curves;
 use super::unknowns::State;
@@ -47,6 +48,7 @@ enum Stage {
     Settling { rounds: Vec<Round>, at: usize, done: usize, planes: Vec<Planes> },
     Judging { rounds: Vec<Round>, planes: Vec<Planes> },
     Rereading { search: Box<Rereading>, planes: Vec<Planes> },
+    Reviewing { search: Box<Reviewing>, planes: Vec<Planes> },
     Curves { planes: Vec<Planes>, findings: Box<Findings>, done: usize },
     Done,
 }
@@ -132,7 +134,10 @@ impl CalibrationCheck {
             }
             Stage::Judging { .. } => (0.85, "judging the candidates"),
             Stage::Rereading { search, .. } => {
-                (0.86 + 0.02 * search.progress(), "trying other conventions of the candidate")
+                (0.86 + 0.01 * search.progress(), "trying other conventions of the candidate")
+            }
+            Stage::Reviewing { search, .. } => {
+                (0.87 + 0.01 * search.progress(), "trying other conventions of the image and the depth map")
             }
             Stage::Curves { done, .. } => {
                 (0.88 + 0.12 * *done as f64 / self.scene.cues.len() as f64, "measuring sensitivity")
@@ -162,6 +167,13 @@ impl CalibrationCheck {
                     self.adopt(*search, planes)
                 } else {
                     Stage::Rereading { search, planes }
+                }
+            }
+            Stage::Reviewing { mut search, planes } => {
+                if search.step(&self.scene) {
+                    self.adopt_views(*search, planes)
+                } else {
+                    Stage::Reviewing { search, planes }
                 }
             }
             Stage::Curves { planes, findings, done } => {
@@ -297,8 +309,36 @@ impl CalibrationCheck {
                 return curves_of(optima, planes);
             }
         }
-        // The first report is kept, and the curves are those of its pose.
         self.lens = lens;
+        match self.candidates.first() {
+            Some((_, candidate)) => {
+                let search = Box::new(Reviewing::new(&self.scene, candidate, &self.best));
+                Stage::Reviewing { search, planes }
+            }
+            None => self.keep_report(planes),
+        }
+    }
+
+    /// Adopts the frames in the best reading of the views if the candidate is not off in them.
+    fn adopt_views(&mut self, search: Reviewing, planes: Vec<Planes>) -> Stage {
+        let Some(Refining { reading, scene, round, planes: read, .. }) = search.end() else {
+            return self.keep_report(planes);
+        };
+        let (lens, scene) = (self.lens, std::mem::replace(&mut self.scene, scene));
+        let optimum = Optimum::at(&self.scene, round, Some(reading), &read);
+        self.lens = distortion::left_out(&mut self.scene, &round);
+        let as_given = self.report.as_ref().and_then(|report| report.candidates.first());
+        if let Some(report) = as_given.and_then(|first| self.conclude_in(reading, first, &optimum, &read)) {
+            self.best = round;
+            self.report = Some(report);
+            return curves_of(vec![optimum], read);
+        }
+        (self.lens, self.scene) = (lens, scene);
+        self.keep_report(planes)
+    }
+
+    /// The first report is kept, and the curves are those of its pose.
+    fn keep_report(&self, planes: Vec<Planes>) -> Stage {
         let findings = Box::new(self.scene.findings(&self.best, &planes));
         Stage::Curves { planes, findings, done: 0 }
     }

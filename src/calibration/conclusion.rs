@@ -21,8 +21,8 @@ const FARTHEST: f64 = 1e6;
 const CLEARLY: f64 = 3.0;
 /// Ratio of two densities above which a candidate counts as misread. The first is the density of the reading in the
 /// distribution of the estimate, the second that of the candidate in the prior about the estimate. The limit is twenty
-/// for each of the fourteen readings that are tried.
-const MISREAD: f64 = 280.0;
+/// for each reading that is tried.
+const MISREAD: f64 = 20.0 * Reading::POSES.len() as f64;
 
 impl CalibrationCheck {
     /// The report on the optima, best first.
@@ -58,6 +58,24 @@ impl CalibrationCheck {
             sensitivity: vec![],
             next: None,
         }
+    }
+
+    /// The report if another reading of the views explains why the first candidate does not pass; `None` if the candidate
+    /// is off in that reading too. `as_given` is the report on the candidate in the views as they were given.
+    pub(super) fn conclude_in(
+        &self,
+        reading: Reading,
+        as_given: &CandidateReport,
+        optimum: &Optimum,
+        planes: &[Planes],
+    ) -> Option<CheckReport> {
+        let mut report = self.conclude(std::slice::from_ref(optimum), planes);
+        let tolerance = self.judge_of(&[optimum]).0.tolerance();
+        let first = report.candidates.first_mut().filter(|first| first.verdict != CheckVerdict::Off)?;
+        let reason = CheckReason::Misread { reading, margin: Margin { health: first.health, tolerance } };
+        *first = CandidateReport { verdict: CheckVerdict::Off, reason: reason.clone(), ..as_given.clone() };
+        (report.verdict, report.reason) = (CheckVerdict::Off, reason);
+        Some(report)
     }
 
     /// The best optimum and those that the frames do not exclude. A candidate hardly ever agrees with the best optimum
@@ -113,13 +131,13 @@ impl CalibrationCheck {
         let scale = prior.fixed_view::<POSE, POSE>(0, 0).try_inverse().unwrap_or_else(PoseMatrix::zeros);
         let of_prior = Distribution::new(vec![Part { weight: 1.0, middle: PoseVector::zeros(), scale }]);
         let least = MISREAD * of_prior.density(&from_best(candidate));
-        let likely = |reading: Reading| {
-            let read = State::at(reading.of(&candidate.pose)?);
+        let likely = |(reading, pose)| {
+            let read = State::at(pose);
             let density = judge.density(&from_best(&read));
             let own = judge.judge(name, state, &read, None);
             (own.verdict != CheckVerdict::Off && density > least).then_some((density, own.health, reading))
         };
-        let fitting = Reading::ALL.into_iter().filter_map(likely);
+        let fitting = Reading::all_poses(&candidate.pose).filter_map(likely);
         if let Some((_, health, reading)) = fitting.max_by(|a, b| a.0.total_cmp(&b.0)) {
             report.reason = CheckReason::Misread { reading, margin: Margin { health, tolerance: judge.tolerance() } };
         }

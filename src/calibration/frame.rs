@@ -28,8 +28,12 @@ pub(super) struct Frame {
     pub camera: Pinhole,
     /// The mask of the object in the image, if one was given.
     pub image_mask: Option<Vec<bool>>,
-    /// Raster of the depth map.
+    /// Raster of the samples: that of the depth map unless it is sparse.
     pub grid: Size,
+    /// Columns and rows of the depth map.
+    pub map: Size,
+    /// Intrinsics of the depth camera; a cloud has none.
+    pub depth_camera: Option<Pinhole>,
     /// Columns and rows of the depth map in a cell of `grid`: one unless the map is sparse.
     pub cell: [usize; 2],
     /// Column and row of the depth map of each cell's sample; empty if every pixel of the map is a cell.
@@ -46,7 +50,7 @@ pub(super) struct Frame {
     /// Width of a pixel of `planes` in pixels of the image as given.
     pub pixel: f64,
     /// Standard deviation of 1 / z, in 1 / m. It is about the same at all depths for cameras that measure disparities.
-    noise: f64,
+    pub noise: f64,
 }
 
 /// Noise of the inverse depth of a raster of points. The inverse depth of a plane is linear, whatever its slope.
@@ -66,6 +70,8 @@ impl Frame {
             camera,
             image_mask: None,
             grid,
+            map: grid,
+            depth_camera: None,
             cell: [1, 1],
             places: vec![],
             points,
@@ -76,6 +82,12 @@ impl Frame {
             pixel: 1.0,
             noise,
         }
+    }
+
+    /// The frame with other points, which are samples of the same pixels.
+    pub fn with_points(self, points: Vec<[f32; 3]>) -> Self {
+        let noise = noise(self.grid, &points);
+        Self { points, noise, ..self }
     }
 
     /// Column and row of the depth map at which the sample of a cell was measured.

@@ -76,6 +76,7 @@ impl RigView {
     /// The error names the member at fault below `frames`.
     pub(super) fn prepare(self, index: usize, warnings: &mut Vec<Warning>) -> Result<(Frame, bool)> {
         let name = self.name.clone();
+        let is_cloud = self.is_cloud();
         let of = |view: &str, kind| Warning { name: name.clone(), field: format!("frames[{index}].{view}"), kind };
         let size = Size::new("image", self.image_size[0], self.image_size[1])?;
         let grid = Size::new("depth", self.depth_size[0], self.depth_size[1])?;
@@ -110,7 +111,8 @@ impl RigView {
         validate(&camera, size, "image.camera")?;
         let Gathered { grid: cells, cell, points, sources } = gathered(grid, points);
         let mut frame = Frame::new(self.name, planes, camera, cells, points);
-        frame.cell = cell;
+        (frame.cell, frame.map) = (cell, grid);
+        frame.depth_camera = self.depth_camera.filter(|_| !is_cloud);
         frame.intensity = self.intensity.map(|all| match sources.len() {
             0 => all,
             // A cell without a sample has no source.
@@ -245,6 +247,11 @@ fn points_of_depths(view: &RigView, grid: Size, depth: impl Fn(usize) -> f64) ->
     Ok((0..grid.len()).map(point).collect())
 }
 
+/// Range of usual median depths, metres.
+pub(super) const fn usual_depths(is_cloud: bool) -> [f32; 2] {
+    [NEAREST, if is_cloud { FARTHEST_OF_CLOUDS } else { FARTHEST }]
+}
+
 /// Plausibility checks of a depth map; each warning caps the verdict.
 fn doubts(view: &RigView, grid: Size, points: &[[f32; 3]]) -> Vec<WarningKind> {
     let mut doubts = Vec::new();
@@ -260,9 +267,9 @@ fn doubts(view: &RigView, grid: Size, points: &[[f32; 3]]) -> Vec<WarningKind> {
         doubts.push(WarningKind::EightBits);
     }
     let median = crate::numeric::quantile(&mut depths, 0.5);
-    let farthest = if view.is_cloud() { FARTHEST_OF_CLOUDS } else { FARTHEST };
-    if !(NEAREST..=farthest).contains(&median) {
-        let usual = [NEAREST, farthest].map(f64::from);
+    let usual = usual_depths(view.is_cloud());
+    if !(usual[0]..=usual[1]).contains(&median) {
+        let usual = usual.map(f64::from);
         doubts.push(WarningKind::UnusualDepths { metres: f64::from(median), usual });
     }
     let pairs = (0..points.len() - 1)

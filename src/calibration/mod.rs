@@ -19,6 +19,7 @@
 //! | `search`, `registration`, `lattice` | initial poses, rounds of the registration, states that rounding does not move |
 //! | `optima` | the optima and their ranking |
 //! | `readings`, `rereading` | other conventions of a candidate, and the search over them |
+//! | `reframed`, `reviewing` | frames in other conventions of their views, and the search over them |
 //! | `distortion`, `guessed` | whether a lens was left out; the uncertainty of a guessed camera |
 //! | `conclusion`, `verdict`, `reason`, `health` | from the optima to verdicts, their reasons and errors |
 //! | `check`, `sensitivity`, `next` | the order of all stages; curves of the cues; the frame to take next |
@@ -49,9 +50,11 @@ mod patches;
 mod planes;
 mod readings;
 mod reason;
+mod reframed;
 mod registration;
 mod report;
 mod rereading;
+mod reviewing;
 mod sampling;
 mod search;
 mod sensitivity;

@@ -130,7 +130,7 @@ impl fmt::Display for CheckReason {
             Self::Misread { reading, margin } => {
                 write!(
                     f,
-                    "Off as given, but it fits if read {reading}: its error is then {margin}; {}.",
+                    "Off as given, but it fits {reading}: its error is then {margin}; {}.",
                     margin.limit()
                 )
             }

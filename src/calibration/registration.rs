@@ -136,9 +136,13 @@ impl Scene {
     pub fn new(frames: Vec<Frame>, cues: Vec<Cue>, focal_is_free: bool) -> Self {
         let scale = (frames[0].planes.size.width as f64 / 640.0).max(1.0);
         let most = MOST_SAMPLES_OF_ONE.min(MOST_SAMPLES / frames.len());
-        let mut samples: Vec<Vec<Sample>> = frames.iter().map(|frame| surface::samples(frame, most)).collect();
+        // Edges need neither samples nor a blurred image.
+        let has_surfaces = cues != [Cue::Edges];
+        let samples = |frame| if has_surfaces { surface::samples(frame, most) } else { vec![] };
+        let mut samples: Vec<Vec<Sample>> = frames.iter().map(samples).collect();
         samples.iter_mut().for_each(|samples| group(samples));
-        let surface_planes = frames.iter().map(|frame| frame.planes.blurred(SURFACE_BLUR)).collect();
+        let blur = if has_surfaces { SURFACE_BLUR } else { 0.0 };
+        let surface_planes = frames.iter().map(|frame| frame.planes.blurred(blur)).collect();
         let sparse = frames.iter().flat_map(|frame| frame.sparse(MOST_POINTS / frames.len())).collect();
         Self { frames, samples, sparse, surface_planes, cues, focal_is_free, scale }
     }

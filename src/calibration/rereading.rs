@@ -29,12 +29,12 @@ impl Rereading {
     pub fn new(scene: &Scene, candidate: &State, mut optima: Vec<Optimum>) -> Self {
         // Nothing contradicts a pose that puts no points onto the image, so it does not compete.
         optima.retain(|optimum| scene.is_seen(&optimum.round.state));
-        let start = |reading: Reading| {
-            let state = State::at(reading.of(&candidate.pose)?);
+        let start = |(reading, pose)| {
+            let state = State::at(pose);
             let round = Round::from(state, state);
             scene.is_seen(&state).then(|| (reading, Start { round, discontinuities: vec![], score: 0.0 }))
         };
-        let starts = Reading::ALL.into_iter().filter_map(start).collect();
+        let starts = Reading::all_poses(&candidate.pose).filter_map(start).collect();
         Self { optima, starts, level: 0, index: 0, planes: scene.planes(SIGMAS[0] * scene.scale) }
     }
 

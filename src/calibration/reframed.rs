@@ -1,0 +1,271 @@
+//! The frames of a check in another reading of their views: image or depth map mirrored or rotated, intrinsics of another
+//! size, another unit or kind of depth.
+
+use super::frame::Frame;
+use super::input::usual_depths;
+use super::planes::Planes;
+use super::readings::Reading;
+use crate::view::{Pinhole, Size};
+
+/// A principal point this far from the middle, as a share of the side, belongs to an image of another size. Those of
+/// cameras lie within some two percent.
+const OFF_MIDDLE: f64 = 0.05;
+
+/// A rearrangement of a raster's pixels.
+#[derive(Clone, Copy)]
+enum Turn {
+    Mirrored,
+    /// Clockwise.
+    Quarter,
+    Half,
+    /// Counter-clockwise.
+    Back,
+}
+
+impl Turn {
+    /// The size of a raster after the turn.
+    const fn size(self, Size { width, height }: Size) -> Size {
+        match self {
+            Self::Mirrored | Self::Half => Size { width, height },
+            Self::Quarter | Self::Back => Size { width: height, height: width },
+        }
+    }
+
+    /// Where a pixel of a raster of this size lies after the turn.
+    const fn place(self, Size { width, height }: Size, (column, row): (usize, usize)) -> (usize, usize) {
+        match self {
+            Self::Mirrored => (width - 1 - column, row),
+            Self::Quarter => (height - 1 - row, column),
+            Self::Half => (width - 1 - column, height - 1 - row),
+            Self::Back => (row, width - 1 - column),
+        }
+    }
+
+    /// Values of a raster after the turn.
+    fn of<T: Copy>(self, size: Size, values: &[T]) -> Vec<T> {
+        let turned = self.size(size);
+        let mut out = values.to_vec();
+        for (index, value) in values.iter().enumerate() {
+            let (column, row) = self.place(size, size.position(index));
+            out[turned.index(column, row)] = *value;
+        }
+        out
+    }
+}
+
+impl Reading {
+    /// The turn of the image that undoes this mistake.
+    const fn image_turn(self) -> Option<Turn> {
+        match self {
+            Self::ImageMirrored => Some(Turn::Mirrored),
+            Self::ImageQuarterTurn => Some(Turn::Back),
+            Self::ImageHalfTurn => Some(Turn::Half),
+            Self::ImageQuarterBack => Some(Turn::Quarter),
+            _ => None,
+        }
+    }
+
+    /// The turn of the depth map that undoes this mistake.
+    const fn depth_turn(self) -> Option<Turn> {
+        match self {
+            Self::DepthMirrored => Some(Turn::Mirrored),
+            Self::DepthQuarterTurn => Some(Turn::Back),
+            Self::DepthHalfTurn => Some(Turn::Half),
+            Self::DepthQuarterBack => Some(Turn::Quarter),
+            _ => None,
+        }
+    }
+
+    /// An image, possibly blurred, in this reading.
+    pub(super) fn planes(self, planes: &Planes) -> Planes {
+        let Some(turn) = self.image_turn() else { return planes.clone() };
+        Planes { size: turn.size(planes.size), pixels: turn.of(planes.size, &planes.pixels) }
+    }
+
+    /// A frame in this reading; `None` if it cannot be read so, or nothing suggests it.
+    pub(super) fn frame(self, frame: &Frame) -> Option<Frame> {
+        let image_size = frame.planes.size;
+        if let Some(turn) = self.image_turn() {
+            let image_mask = frame.image_mask.as_ref().map(|mask| turn.of(image_size, mask));
+            return Some(Frame { planes: self.planes(&frame.planes), image_mask, ..frame.clone() });
+        }
+        if let Some(turn) = self.depth_turn() {
+            return with_map_turned(frame, turn);
+        }
+        let of_camera = |camera| Some(Frame { camera, ..frame.clone() });
+        match self {
+            Self::ImageResized => resized(&frame.camera, image_size).and_then(of_camera),
+            Self::ImageCropped => cropped(&frame.camera, image_size).and_then(of_camera),
+            Self::DepthResized => with_depth_camera(frame, resized(&frame.depth_camera?, frame.map)?),
+            Self::DepthCropped => with_depth_camera(frame, cropped(&frame.depth_camera?, frame.map)?),
+            Self::RayLength => {
+                frame.depth_camera?;
+                Some(with_points(frame, |p| {
+                    let [x, y, z] = p.map(f64::from);
+                    p.map(|value| value * (z / x.hypot(y).hypot(z)) as f32)
+                }))
+            }
+            Self::DepthMillimetres => (median_depth(frame) > usual_depths(frame.is_cloud)[1]).then(|| scaled(frame, 0.001)),
+            Self::DepthMetres => (median_depth(frame) < usual_depths(frame.is_cloud)[0]).then(|| scaled(frame, 1000.0)),
+            _ => None,
+        }
+    }
+}
+
+fn with_points(frame: &Frame, change: impl Fn([f32; 3]) -> [f32; 3]) -> Frame {
+    frame.clone().with_points(frame.points.iter().map(|point| change(*point)).collect())
+}
+
+fn scaled(frame: &Frame, factor: f32) -> Frame {
+    with_points(frame, |point| point.map(|value| factor * value))
+}
+
+fn median_depth(frame: &Frame) -> f32 {
+    let mut distances: Vec<f32> =
+        frame.points.iter().filter(|point| !point[2].is_nan()).map(|[x, y, z]| x.hypot(*y).hypot(*z)).collect();
+    crate::numeric::quantile(&mut distances, 0.5)
+}
+
+/// The same depths on the rays of other pixels.
+fn with_map_turned(frame: &Frame, turn: Turn) -> Option<Frame> {
+    let camera = frame.depth_camera?;
+    let (grid, map) = (turn.size(frame.grid), turn.size(frame.map));
+    let places: Vec<(usize, usize)> =
+        (0..frame.grid.len()).map(|index| turn.place(frame.map, frame.place(index))).collect();
+    let points: Vec<[f32; 3]> =
+        frame.points.iter().zip(&places).map(|(point, place)| on_ray(&camera, *place, point[2])).collect();
+    let turned = Frame {
+        grid,
+        map,
+        cell: if grid == frame.grid { frame.cell } else { [frame.cell[1], frame.cell[0]] },
+        places: if frame.places.is_empty() { vec![] } else { turn.of(frame.grid, &places) },
+        intensity: frame.intensity.as_ref().map(|intensity| turn.of(frame.grid, intensity)),
+        ..frame.clone()
+    };
+    Some(turned.with_points(turn.of(frame.grid, &points)))
+}
+
+/// The same depths on the rays of another camera.
+fn with_depth_camera(frame: &Frame, camera: Pinhole) -> Option<Frame> {
+    let points = (0..frame.grid.len()).map(|index| on_ray(&camera, frame.place(index), frame.points[index][2]));
+    let points = points.collect();
+    Some(Frame { depth_camera: Some(camera), ..frame.clone() }.with_points(points))
+}
+
+/// The point at a depth on the ray of a pixel; NaN without a depth or a ray.
+fn on_ray(camera: &Pinhole, (column, row): (usize, usize), z: f32) -> [f32; 3] {
+    match camera.ray([column as f64, row as f64]) {
+        Some([x, y, along]) if along > 0.0 => [x / along, y / along, 1.0].map(|value| value as f32 * z),
+        _ => [f32::NAN; 3],
+    }
+}
+
+/// The columns and rows of the image in whose middle a principal point lies.
+fn told_size(camera: &Pinhole) -> [f64; 2] {
+    [2.0 * camera.cx + 1.0, 2.0 * camera.cy + 1.0]
+}
+
+/// The intrinsics of an image of this size if they are those of another one with the same angle of view along x.
+fn resized(camera: &Pinhole, size: Size) -> Option<Pinhole> {
+    rescaled(camera, size, size.width as f64 / told_size(camera)[0])
+}
+
+/// The same with the same angle of view along y, if the images differ in shape.
+fn cropped(camera: &Pinhole, size: Size) -> Option<Pinhole> {
+    let told = told_size(camera);
+    let [by_width, by_height] = [size.width as f64 / told[0], size.height as f64 / told[1]];
+    let differs = (by_width / by_height - 1.0).abs() > OFF_MIDDLE;
+    differs.then(|| rescaled(camera, size, by_height)).flatten()
+}
+
+/// Scaled intrinsics with the principal point as far from the middle as it was; `None` for those of the image itself.
+fn rescaled(camera: &Pinhole, size: Size, scale: f64) -> Option<Pinhole> {
+    let sides = [size.width as f64, size.height as f64];
+    let told = told_size(camera);
+    let is_own = (0..2).all(|k| (told[k] / sides[k] - 1.0).abs() <= 2.0 * OFF_MIDDLE);
+    let [cx, cy] = sides.map(|side| (side - 1.0) / 2.0);
+    let is_valid = scale.is_finite() && scale > 0.0;
+    (is_valid && !is_own).then(|| Pinhole { fx: scale * camera.fx, fy: scale * camera.fy, cx, cy, lens: camera.lens })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::Lens;
+
+    const SIZE: Size = Size { width: 12, height: 8 };
+
+    fn camera() -> Pinhole {
+        Pinhole { fx: 10.0, fy: 10.0, cx: 5.5, cy: 3.5, lens: Lens::None }
+    }
+
+    /// A frame whose image and depth map name their pixels.
+    fn frame() -> Frame {
+        let pixels = (0..SIZE.len()).map(|index| [index as f32; 3]).collect();
+        let planes = Planes { size: SIZE, pixels };
+        let points = (0..SIZE.len()).map(|index| on_ray(&camera(), SIZE.position(index), 0.5 + 0.01 * index as f32)).collect();
+        let mut frame = Frame::new(String::new(), planes, camera(), SIZE, points);
+        frame.depth_camera = Some(camera());
+        frame.image_mask = Some((0..SIZE.len()).map(|index| index == 5).collect());
+        frame
+    }
+
+    #[test]
+    fn four_quarters_are_a_whole_turn_and_a_quarter_is_undone_by_the_other() {
+        let is_same = |a: &Frame, b: &Frame| {
+            assert_eq!((a.planes.size, a.grid, a.map), (b.planes.size, b.grid, b.map));
+            assert_eq!(a.planes.pixels, b.planes.pixels);
+            assert_eq!(a.image_mask, b.image_mask);
+            a.points.iter().flatten().zip(b.points.iter().flatten()).for_each(|(a, b)| assert!((a - b).abs() < 1e-3));
+        };
+        for [quarter, half, back, mirrored] in [
+            [Reading::ImageQuarterTurn, Reading::ImageHalfTurn, Reading::ImageQuarterBack, Reading::ImageMirrored],
+            [Reading::DepthQuarterTurn, Reading::DepthHalfTurn, Reading::DepthQuarterBack, Reading::DepthMirrored],
+        ] {
+            let after = |readings: &[Reading]| {
+                readings.iter().fold(frame(), |frame, reading| reading.frame(&frame).unwrap())
+            };
+            is_same(&after(&[quarter, quarter]), &after(&[half]));
+            is_same(&after(&[quarter, back]), &frame());
+            is_same(&after(&[half, half]), &frame());
+            is_same(&after(&[mirrored, mirrored]), &frame());
+            is_same(&after(&[mirrored, quarter, mirrored]), &after(&[back]));
+        }
+        // A picture that was turned clockwise has its first pixel at the upper right.
+        let restored = Reading::ImageQuarterTurn.frame(&frame()).unwrap();
+        assert_eq!(restored.planes.size, Size { width: 8, height: 12 });
+        assert_eq!(restored.planes.pixels[0][0], 11.0);
+    }
+
+    #[test]
+    fn intrinsics_of_another_size_are_scaled_and_own_ones_are_kept() {
+        let wide = Pinhole { fx: 20.0, fy: 20.0, cx: 11.5, cy: 7.5, lens: Lens::None };
+        let found = resized(&wide, SIZE).unwrap();
+        assert_eq!((found.fx, found.fy, found.cx, found.cy), (10.0, 10.0, 5.5, 3.5));
+        assert!(cropped(&wide, SIZE).is_none() && resized(&camera(), SIZE).is_none());
+        // Twice as high, and cut at the sides to a square.
+        let square = Pinhole { cx: 7.5, ..wide };
+        assert_eq!(cropped(&square, SIZE).unwrap().fx, 10.0);
+        let frame = Frame { camera: wide, ..frame() };
+        assert_eq!(Reading::ImageResized.frame(&frame).unwrap().camera.fx, 10.0);
+        assert!(Reading::DepthResized.frame(&frame).is_none());
+    }
+
+    #[test]
+    fn lengths_along_rays_and_other_units_become_depths() {
+        let lengths = with_points(&frame(), |p| {
+            let along = (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]).sqrt() / p[2];
+            p.map(|value| value * along)
+        });
+        let found = Reading::RayLength.frame(&lengths).unwrap();
+        found.points.iter().zip(&frame().points).for_each(|(a, b)| assert!((a[2] - b[2]).abs() < 1e-3));
+        let [small, large] = [0.001, 1000.0].map(|factor| scaled(&frame(), factor));
+        assert!((median_depth(&Reading::DepthMetres.frame(&small).unwrap()) / median_depth(&frame()) - 1.0).abs() < 1e-5);
+        assert!(Reading::DepthMillimetres.frame(&large).is_some());
+        assert!(Reading::DepthMetres.frame(&frame()).is_none() && Reading::DepthMillimetres.frame(&frame()).is_none());
+        // A cloud has no rays of pixels.
+        let cloud = Frame { depth_camera: None, ..frame() };
+        let is_of_map = |reading: &Reading| reading.frame(&cloud).is_none();
+        assert!([Reading::RayLength, Reading::DepthMirrored, Reading::DepthResized].iter().all(is_of_map));
+    }
+}

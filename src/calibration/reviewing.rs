@@ -1,0 +1,127 @@
+//! The search over other readings of the views, for a candidate that does not pass in any convention of poses.
+//!
+//! In each reading the candidate is registered by its edges, level by level. The reading with the best mean log
+//! likelihood of a depth discontinuity is taken if it is clearly better than the estimate with the views as they are.
+//! Its frames then replace those of the check, and the candidate is refined in them with all cues.
+
+use super::cue::Cue;
+use super::frame::Frame;
+use super::planes::Planes;
+use super::readings::Reading;
+use super::registration::{ARRIVED, MOST_SETTLING, Round, SIGMAS, Scene};
+use super::unknowns::State;
+
+/// Maximum number of frames in which readings are compared. All frames of a rig are stored alike.
+const MOST_FRAMES: usize = 2;
+/// Least gain in the mean log likelihood of a depth discontinuity at which a reading is taken, as for a lens that was
+/// left out (`distortion`).
+const GAIN: f64 = 0.06;
+
+/// The readings under way.
+pub(super) struct Reviewing {
+    /// Frames as they are.
+    frames: Vec<Frame>,
+    /// Their images, blurred for each level.
+    planes: Vec<Vec<Planes>>,
+    candidate: State,
+    /// Index of the next reading.
+    index: usize,
+    /// The best score so far; first that of the estimate.
+    score: f64,
+    best: Option<Reading>,
+    /// The candidate in the frames of the best reading, after all have been compared.
+    refining: Option<Refining>,
+}
+
+/// All frames in another reading, and the candidate under refinement in them.
+pub(super) struct Refining {
+    pub reading: Reading,
+    pub scene: Scene,
+    pub round: Round,
+    pub planes: Vec<Planes>,
+    done: usize,
+}
+
+impl Reviewing {
+    pub fn new(scene: &Scene, candidate: &State, estimate: &Round) -> Self {
+        let frames = scene.frames[..scene.frames.len().min(MOST_FRAMES)].to_vec();
+        let own = of_edges(frames.clone(), scene);
+        let planes: Vec<Vec<Planes>> = SIGMAS.iter().map(|sigma| own.planes(sigma * scene.scale)).collect();
+        let score = score(&own, &estimate.state, &planes).max(score(&own, candidate, &planes));
+        Self { frames, planes, candidate: *candidate, index: 0, score: score + GAIN, best: None, refining: None }
+    }
+
+    /// Share of the search that is done.
+    pub fn progress(&self) -> f64 {
+        self.index as f64 / Reading::VIEWS.len() as f64
+    }
+
+    /// Compares one reading, or refines the candidate in the best one by a round. Returns whether the search is over.
+    pub fn step(&mut self, scene: &Scene) -> bool {
+        if let Some(refining) = &mut self.refining {
+            return refining.step();
+        }
+        if let Some(reading) = Reading::VIEWS.get(self.index) {
+            self.compare(*reading, scene);
+            self.index += 1;
+            return false;
+        }
+        self.refining = self.best.and_then(|reading| Refining::new(reading, scene, &self.candidate));
+        self.refining.is_none()
+    }
+
+    /// The frames of the best reading, and the candidate refined in them; `None` if no reading is clearly better.
+    pub fn end(self) -> Option<Refining> {
+        self.refining
+    }
+
+    fn compare(&mut self, reading: Reading, scene: &Scene) {
+        let frames: Option<Vec<Frame>> = self.frames.iter().map(|frame| reading.frame(frame)).collect();
+        let Some(frames) = frames else { return };
+        let read = of_edges(frames, scene);
+        if !read.is_seen(&self.candidate) {
+            return;
+        }
+        let planes: Vec<Vec<Planes>> =
+            self.planes.iter().map(|level| level.iter().map(|planes| reading.planes(planes)).collect()).collect();
+        let score = score(&read, &self.candidate, &planes);
+        if score > self.score {
+            (self.score, self.best) = (score, Some(reading));
+        }
+    }
+}
+
+impl Refining {
+    fn new(reading: Reading, scene: &Scene, candidate: &State) -> Option<Self> {
+        let frames: Option<Vec<Frame>> = scene.frames.iter().map(|frame| reading.frame(frame)).collect();
+        let read = Scene::new(frames?, scene.cues.clone(), scene.focal_is_free);
+        let mut start = read.start(*candidate, *candidate);
+        let mut planes = vec![];
+        for sigma in SIGMAS {
+            planes = read.planes(sigma * read.scale);
+            read.find_anew(&mut start);
+            read.approach(&mut start, sigma * read.scale, &planes);
+        }
+        Some(Self { reading, scene: read, round: start.round, planes, done: 0 })
+    }
+
+    fn step(&mut self) -> bool {
+        self.done += 1;
+        self.scene.settle(&mut self.round, &self.planes) < ARRIVED || self.done == MOST_SETTLING
+    }
+}
+
+/// A scene of these frames in which only edges are compared.
+fn of_edges(frames: Vec<Frame>, scene: &Scene) -> Scene {
+    Scene::new(frames, vec![Cue::Edges], scene.focal_is_free)
+}
+
+/// The mean log likelihood of a depth discontinuity at the end of a registration from a state.
+fn score(scene: &Scene, from: &State, planes: &[Vec<Planes>]) -> f64 {
+    let mut start = scene.start(*from, *from);
+    for (sigma, planes) in SIGMAS.iter().zip(planes) {
+        scene.find_anew(&mut start);
+        scene.approach(&mut start, sigma * scene.scale, planes);
+    }
+    start.score
+}
