@@ -63,7 +63,7 @@ export interface Warning {
   [detail: string]: unknown;
 }
 
-/** A convention in which calibrations are commonly misread. */
+/** A convention in which calibrations, images ("image-") or depth maps ("depth-", "ray-length") are commonly misread. */
 export type CheckReading =
   | "inverse"
   | "transposed-rotation"
@@ -74,11 +74,28 @@ export type CheckReading =
   | "body-depth"
   | "body-colour"
   | "millimetres"
+  | "metres"
   | "radians"
+  | "degrees"
   | "registered"
   | "quarter-turn"
   | "half-turn"
-  | "quarter-back";
+  | "quarter-back"
+  | "image-mirrored"
+  | "image-quarter-turn"
+  | "image-half-turn"
+  | "image-quarter-back"
+  | "image-resized"
+  | "image-cropped"
+  | "depth-mirrored"
+  | "depth-quarter-turn"
+  | "depth-half-turn"
+  | "depth-quarter-back"
+  | "depth-resized"
+  | "depth-cropped"
+  | "ray-length"
+  | "depth-millimetres"
+  | "depth-metres";
 
 /** The result for one candidate. */
 export interface CandidateReport {

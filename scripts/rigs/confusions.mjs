@@ -123,7 +123,7 @@ export const CONFUSIONS = {
   "depth map turned by 180 degrees": [depth(turned(2)), ["depth-half-turn"]],
   "depth map turned by 270 degrees": [depth(turned(3)), ["depth-quarter-back"]],
   "colour intrinsics of another size": [image(otherSize), ["image-resized"]],
-  "colour intrinsics of another shape": [image(otherShape), ["image-resized"]],
+  "colour intrinsics of another shape": [image(otherShape), ["image-resized", "image-cropped"]],
   "depth intrinsics of another size": [depth(otherSize), ["depth-resized"]],
   "depths along the rays": [depth(lengths), ["ray-length"]],
   "depth in millimetres read as metres": [inUnit(1000), ["depth-millimetres", "unit"]],

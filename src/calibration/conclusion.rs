@@ -21,8 +21,8 @@ const FARTHEST: f64 = 1e6;
 const CLEARLY: f64 = 3.0;
 /// Ratio of two densities above which a candidate counts as misread. The first is the density of the reading in the
 /// distribution of the estimate, the second that of the candidate in the prior about the estimate. The limit is twenty
-/// for each reading that is tried.
-const MISREAD: f64 = 20.0 * Reading::POSES.len() as f64;
+/// for each of the sixteen readings of poses.
+const MISREAD: f64 = 320.0;
 
 impl CalibrationCheck {
     /// The report on the optima, best first.

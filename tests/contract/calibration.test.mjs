@@ -7,6 +7,7 @@ import { decodeColour, decodeDepth } from "../../pkg/files.js";
 import { aboutAxis, degreesBetween as degreesOf, product, transpose, turn } from "../../protocols/rotations.mjs";
 import { LONG, longUnless } from "./long.mjs";
 import { BimodalError, checkCalibration } from "./support.mjs";
+import { rotated } from "../../scripts/rigs/mistakes.mjs";
 
 /** A pose with an error about the camera, degrees and metres. */
 const wrong = (pose, axis, degrees, shift = [0, 0, 0]) => {
@@ -131,6 +132,20 @@ describe("a rig before boxes", () => {
     assert.match(told.reason, /^Off as given, but it fits if read with its translation in millimetres/);
     assert.ok(degreesBetween(told.estimate, truth) < 0.5, `${degreesBetween(told.estimate, truth)}`);
   });
+
+  for (const [view, reading, message] of [
+    ["depth", "depth-mirrored", /^Off as given, but it fits once the depth map is mirrored left to right/],
+    ["image", "image-quarter-turn", /^Off as given, but it fits once the colour image is rotated by 90 degrees/],
+  ])
+    test(`a view that was stored otherwise is named in the verdict: ${reading}`, LONG, async () => {
+      const { from: _, place: __, ...stored } = rotated(frame[view], view === "image" ? 1 : 0, view === "depth");
+      const told = await checkCalibration([{ ...frame, [view]: stored }], { told: truth });
+      assert.deepEqual([told.verdict, told.code, told.reading], ["off", "misread", reading]);
+      assert.match(told.reason, message);
+      // The estimate is that of the views as they should be read, and the candidate's error that of the views as given.
+      assert.ok(degreesBetween(told.estimate, truth) < 0.5, `${degreesBetween(told.estimate, truth)}`);
+      assert.equal(told.candidates.told.verdict, "off");
+    });
 
   test("a distortion that was left out is named", LONG, async () => {
     const { distortion, ...camera } = frame.image.camera;

@@ -92,7 +92,7 @@ export function advise(run: Run): string[] {
   const confirm = guessed.length > 0 ? [`Confirm the guess in step 1: ${guessed.join("; ")}.`] : [];
   if (!isOpen) list.push(...confirm);
   if (!estimateOnly && report.code === "misread")
-    list.push("Convert the calibration of step 2 as the verdict says, and check it again.");
+    list.push("Convert the file as the verdict says, and check again.");
   else if (!estimateOnly && report.verdict === "off")
     list.push("Save the calibration found here, use it instead of yours, and check it with new frames.");
   if (!isUsable(run))
