@@ -11,6 +11,7 @@ use super::input::RigView;
 use super::next::next;
 use super::optima::{self, Optimum, SAME_START};
 use super::planes::Planes;
+use super::readings::Reading;
 use super::reason::{CheckReason, Warning, WarningKind};
 use super::registration::{ARRIVED, Findings, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start};
 use super::report::CheckReport;
@@ -44,12 +45,36 @@ fn initial(scene: &Scene, candidates: &[(String, State)]) -> State {
 
 enum Stage {
     Starting,
-    Approaching { level: usize, index: usize, planes: Vec<Planes> },
-    Settling { rounds: Vec<Round>, at: usize, done: usize, planes: Vec<Planes> },
-    Judging { rounds: Vec<Round>, planes: Vec<Planes> },
-    Rereading { search: Box<Rereading>, planes: Vec<Planes> },
-    Reviewing { search: Box<Reviewing>, planes: Vec<Planes> },
-    Curves { planes: Vec<Planes>, findings: Box<Findings>, done: usize },
+    Approaching {
+        level: usize,
+        index: usize,
+        planes: Vec<Planes>,
+    },
+    Settling {
+        rounds: Vec<Round>,
+        at: usize,
+        done: usize,
+        planes: Vec<Planes>,
+    },
+    Judging {
+        rounds: Vec<Round>,
+        planes: Vec<Planes>,
+    },
+    Rereading {
+        search: Box<Rereading>,
+        planes: Vec<Planes>,
+    },
+    /// The optima are there if other conventions of the candidate are still to be tried.
+    Reviewing {
+        search: Box<Reviewing>,
+        planes: Vec<Planes>,
+        optima: Option<Vec<Optimum>>,
+    },
+    Curves {
+        planes: Vec<Planes>,
+        findings: Box<Findings>,
+        done: usize,
+    },
     Done,
 }
 
@@ -169,11 +194,11 @@ impl CalibrationCheck {
                     Stage::Rereading { search, planes }
                 }
             }
-            Stage::Reviewing { mut search, planes } => {
+            Stage::Reviewing { mut search, planes, optima } => {
                 if search.step(&self.scene) {
-                    self.adopt_views(*search, planes)
+                    self.adopt_views(*search, planes, optima)
                 } else {
-                    Stage::Reviewing { search, planes }
+                    Stage::Reviewing { search, planes, optima }
                 }
             }
             Stage::Curves { planes, findings, done } => {
@@ -283,11 +308,21 @@ impl CalibrationCheck {
         self.best = optima[0].round;
         self.lens = distortion::left_out(&mut self.scene, &self.best);
         let report = self.conclude(&optima, &planes);
-        let is_settled = names_reading(&report)
-            || report.candidates.first().is_none_or(|first| first.verdict == CheckVerdict::Consistent);
+        let passes = report.candidates.first().is_none_or(|first| first.verdict == CheckVerdict::Consistent);
         self.report = Some(report);
         match self.candidates.first() {
-            Some((_, candidate)) if !is_settled => {
+            Some((_, candidate)) if !passes => {
+                let search = Box::new(Reviewing::new(&Reading::SUGGESTED, &self.scene, candidate, &self.best));
+                Stage::Reviewing { search, planes, optima: Some(optima) }
+            }
+            _ => curves_of(optima, planes),
+        }
+    }
+
+    /// Tries other conventions of the first candidate, unless one is named already.
+    fn reread(&self, optima: Vec<Optimum>, planes: Vec<Planes>) -> Stage {
+        match self.candidates.first() {
+            Some((_, candidate)) if !self.report.as_ref().is_some_and(names_reading) => {
                 let search = Box::new(Rereading::new(&self.scene, candidate, optima));
                 Stage::Rereading { search, planes }
             }
@@ -312,18 +347,27 @@ impl CalibrationCheck {
         self.lens = lens;
         match self.candidates.first() {
             Some((_, candidate)) => {
-                let search = Box::new(Reviewing::new(&self.scene, candidate, &self.best));
-                Stage::Reviewing { search, planes }
+                let search = Box::new(Reviewing::new(&Reading::VIEWS, &self.scene, candidate, &self.best));
+                Stage::Reviewing { search, planes, optima: None }
             }
             None => self.keep_report(planes),
         }
     }
 
-    /// Adopts the frames in the best reading of the views if the candidate is not off in them.
-    fn adopt_views(&mut self, search: Reviewing, planes: Vec<Planes>) -> Stage {
-        let Some(Refining { reading, scene, round, planes: read, .. }) = search.end() else {
-            return self.keep_report(planes);
-        };
+    /// Adopts the frames in the best reading of the views if the candidate is not off in them. Otherwise, with `optima`, tries
+    /// other conventions of the candidate.
+    fn adopt_views(&mut self, search: Reviewing, planes: Vec<Planes>, optima: Option<Vec<Optimum>>) -> Stage {
+        if let Some(curves) = search.end().and_then(|refining| self.conclude_views(refining)) {
+            return curves;
+        }
+        match optima {
+            Some(optima) => self.reread(optima, planes),
+            None => self.keep_report(planes),
+        }
+    }
+
+    fn conclude_views(&mut self, refining: Refining) -> Option<Stage> {
+        let Refining { reading, scene, round, planes: read, .. } = refining;
         let (lens, scene) = (self.lens, std::mem::replace(&mut self.scene, scene));
         let optimum = Optimum::at(&self.scene, round, Some(reading), &read);
         self.lens = distortion::left_out(&mut self.scene, &round);
@@ -331,10 +375,10 @@ impl CalibrationCheck {
         if let Some(report) = as_given.and_then(|first| self.conclude_in(reading, first, &optimum, &read)) {
             self.best = round;
             self.report = Some(report);
-            return curves_of(vec![optimum], read);
+            return Some(curves_of(vec![optimum], read));
         }
         (self.lens, self.scene) = (lens, scene);
-        self.keep_report(planes)
+        None
     }
 
     /// The first report is kept, and the curves are those of its pose.

@@ -107,23 +107,27 @@ impl Reading {
         Self::QuarterBack,
     ];
 
-    /// The readings that change the image or the depth map.
-    pub(super) const VIEWS: [Self; 15] = [
+    /// The readings of the views that the input itself suggests: a principal point far from the middle, or unusual depths.
+    pub(super) const SUGGESTED: [Self; 6] = [
+        Self::ImageResized,
+        Self::ImageCropped,
+        Self::DepthResized,
+        Self::DepthCropped,
+        Self::DepthMillimetres,
+        Self::DepthMetres,
+    ];
+
+    /// The other readings of the views, of which only the fit can tell.
+    pub(super) const VIEWS: [Self; 9] = [
         Self::ImageMirrored,
         Self::ImageQuarterTurn,
         Self::ImageHalfTurn,
         Self::ImageQuarterBack,
-        Self::ImageResized,
-        Self::ImageCropped,
         Self::DepthMirrored,
         Self::DepthQuarterTurn,
         Self::DepthHalfTurn,
         Self::DepthQuarterBack,
-        Self::DepthResized,
-        Self::DepthCropped,
         Self::RayLength,
-        Self::DepthMillimetres,
-        Self::DepthMetres,
     ];
 
     /// The poses of a candidate that follows this convention; none if the candidate cannot follow it, or if the

@@ -128,11 +128,7 @@ impl fmt::Display for CheckReason {
             ),
             Self::OffTarget { margin, offset } => write!(f, "Off by about {offset}: {margin}; {}.", margin.limit()),
             Self::Misread { reading, margin } => {
-                write!(
-                    f,
-                    "Off as given, but it fits {reading}: its error is then {margin}; {}.",
-                    margin.limit()
-                )
+                write!(f, "Off as given, but it fits {reading}: its error is then {margin}; {}.", margin.limit())
             }
             Self::NoPointsOnImage => {
                 f.write_str("Off, or read in a wrong convention: it puts no points onto the image.")

@@ -11,6 +11,32 @@ use crate::view::{Pinhole, Size};
 /// cameras lie within some two percent.
 const OFF_MIDDLE: f64 = 0.05;
 
+/// Columns and rows of the streams of common colour and depth cameras.
+const STREAMS: [[f64; 2]; 22] = [
+    [320.0, 180.0],
+    [320.0, 240.0],
+    [320.0, 288.0],
+    [424.0, 240.0],
+    [480.0, 270.0],
+    [512.0, 424.0],
+    [512.0, 512.0],
+    [640.0, 360.0],
+    [640.0, 480.0],
+    [640.0, 576.0],
+    [848.0, 480.0],
+    [960.0, 540.0],
+    [1024.0, 768.0],
+    [1024.0, 1024.0],
+    [1280.0, 720.0],
+    [1280.0, 800.0],
+    [1280.0, 960.0],
+    [1280.0, 1024.0],
+    [1920.0, 1080.0],
+    [1920.0, 1440.0],
+    [2048.0, 1536.0],
+    [3840.0, 2160.0],
+];
+
 /// A rearrangement of a raster's pixels.
 #[derive(Clone, Copy)]
 enum Turn {
@@ -105,7 +131,9 @@ impl Reading {
                     p.map(|value| value * (z / x.hypot(y).hypot(z)) as f32)
                 }))
             }
-            Self::DepthMillimetres => (median_depth(frame) > usual_depths(frame.is_cloud)[1]).then(|| scaled(frame, 0.001)),
+            Self::DepthMillimetres => {
+                (median_depth(frame) > usual_depths(frame.is_cloud)[1]).then(|| scaled(frame, 0.001))
+            }
             Self::DepthMetres => (median_depth(frame) < usual_depths(frame.is_cloud)[0]).then(|| scaled(frame, 1000.0)),
             _ => None,
         }
@@ -160,14 +188,19 @@ fn on_ray(camera: &Pinhole, (column, row): (usize, usize), z: f32) -> [f32; 3] {
     }
 }
 
-/// The columns and rows of the image in whose middle a principal point lies.
+/// The size of the image to which intrinsics belong: that of a common stream, or else the one in whose middle the principal
+/// point lies.
 fn told_size(camera: &Pinhole) -> [f64; 2] {
-    [2.0 * camera.cx + 1.0, 2.0 * camera.cy + 1.0]
+    let told = [2.0 * camera.cx + 1.0, 2.0 * camera.cy + 1.0];
+    let off = |size: &[f64; 2]| (0..2).map(|k| (told[k] / size[k] - 1.0).abs()).fold(0.0, f64::max);
+    let nearest = STREAMS.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+    nearest.copied().filter(|size| off(size) <= OFF_MIDDLE).unwrap_or(told)
 }
 
 /// The intrinsics of an image of this size if they are those of another one with the same angle of view along x.
 fn resized(camera: &Pinhole, size: Size) -> Option<Pinhole> {
-    rescaled(camera, size, size.width as f64 / told_size(camera)[0])
+    let told = told_size(camera);
+    rescaled(camera, size, told, size.width as f64 / told[0])
 }
 
 /// The same with the same angle of view along y, if the images differ in shape.
@@ -175,16 +208,17 @@ fn cropped(camera: &Pinhole, size: Size) -> Option<Pinhole> {
     let told = told_size(camera);
     let [by_width, by_height] = [size.width as f64 / told[0], size.height as f64 / told[1]];
     let differs = (by_width / by_height - 1.0).abs() > OFF_MIDDLE;
-    differs.then(|| rescaled(camera, size, by_height)).flatten()
+    differs.then(|| rescaled(camera, size, told, by_height)).flatten()
 }
 
-/// Scaled intrinsics with the principal point as far from the middle as it was; `None` for those of the image itself.
-fn rescaled(camera: &Pinhole, size: Size, scale: f64) -> Option<Pinhole> {
+/// Intrinsics of an image of the size `told`, for one that is scaled and has its sides cut or added evenly; `None` for
+/// intrinsics of the image itself.
+fn rescaled(camera: &Pinhole, size: Size, told: [f64; 2], scale: f64) -> Option<Pinhole> {
     let sides = [size.width as f64, size.height as f64];
-    let told = told_size(camera);
-    let is_own = (0..2).all(|k| (told[k] / sides[k] - 1.0).abs() <= 2.0 * OFF_MIDDLE);
-    let [cx, cy] = sides.map(|side| (side - 1.0) / 2.0);
+    let is_own = (0..2).all(|k| ([camera.cx, camera.cy][k] - 0.5 * (sides[k] - 1.0)).abs() <= OFF_MIDDLE * sides[k]);
     let is_valid = scale.is_finite() && scale > 0.0;
+    let centre = |k: usize, own: f64| scale * (own + 0.5) + 0.5 * (sides[k] - scale * told[k]) - 0.5;
+    let [cx, cy] = [centre(0, camera.cx), centre(1, camera.cy)];
     (is_valid && !is_own).then(|| Pinhole { fx: scale * camera.fx, fy: scale * camera.fy, cx, cy, lens: camera.lens })
 }
 
@@ -203,7 +237,8 @@ mod tests {
     fn frame() -> Frame {
         let pixels = (0..SIZE.len()).map(|index| [index as f32; 3]).collect();
         let planes = Planes { size: SIZE, pixels };
-        let points = (0..SIZE.len()).map(|index| on_ray(&camera(), SIZE.position(index), 0.5 + 0.01 * index as f32)).collect();
+        let points =
+            (0..SIZE.len()).map(|index| on_ray(&camera(), SIZE.position(index), 0.5 + 0.01 * index as f32)).collect();
         let mut frame = Frame::new(String::new(), planes, camera(), SIZE, points);
         frame.depth_camera = Some(camera());
         frame.image_mask = Some((0..SIZE.len()).map(|index| index == 5).collect());
@@ -222,9 +257,8 @@ mod tests {
             [Reading::ImageQuarterTurn, Reading::ImageHalfTurn, Reading::ImageQuarterBack, Reading::ImageMirrored],
             [Reading::DepthQuarterTurn, Reading::DepthHalfTurn, Reading::DepthQuarterBack, Reading::DepthMirrored],
         ] {
-            let after = |readings: &[Reading]| {
-                readings.iter().fold(frame(), |frame, reading| reading.frame(&frame).unwrap())
-            };
+            let after =
+                |readings: &[Reading]| readings.iter().fold(frame(), |frame, reading| reading.frame(&frame).unwrap());
             is_same(&after(&[quarter, quarter]), &after(&[half]));
             is_same(&after(&[quarter, back]), &frame());
             is_same(&after(&[half, half]), &frame());
@@ -260,7 +294,9 @@ mod tests {
         let found = Reading::RayLength.frame(&lengths).unwrap();
         found.points.iter().zip(&frame().points).for_each(|(a, b)| assert!((a[2] - b[2]).abs() < 1e-3));
         let [small, large] = [0.001, 1000.0].map(|factor| scaled(&frame(), factor));
-        assert!((median_depth(&Reading::DepthMetres.frame(&small).unwrap()) / median_depth(&frame()) - 1.0).abs() < 1e-5);
+        assert!(
+            (median_depth(&Reading::DepthMetres.frame(&small).unwrap()) / median_depth(&frame()) - 1.0).abs() < 1e-5
+        );
         assert!(Reading::DepthMillimetres.frame(&large).is_some());
         assert!(Reading::DepthMetres.frame(&frame()).is_none() && Reading::DepthMillimetres.frame(&frame()).is_none());
         // A cloud has no rays of pixels.

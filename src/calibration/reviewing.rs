@@ -1,4 +1,5 @@
-//! The search over other readings of the views, for a candidate that does not pass in any convention of poses.
+//! The search over other readings of the views, for a candidate that does not pass: first over those that the input itself
+//! suggests, and after the conventions of poses over the others.
 //!
 //! In each reading the candidate is registered by its edges, level by level. The reading with the best mean log
 //! likelihood of a depth discontinuity is taken if it is clearly better than the estimate with the views as they are.
@@ -19,6 +20,7 @@ const GAIN: f64 = 0.06;
 
 /// The readings under way.
 pub(super) struct Reviewing {
+    readings: &'static [Reading],
     /// Frames as they are.
     frames: Vec<Frame>,
     /// Their images, blurred for each level.
@@ -43,17 +45,18 @@ pub(super) struct Refining {
 }
 
 impl Reviewing {
-    pub fn new(scene: &Scene, candidate: &State, estimate: &Round) -> Self {
+    pub fn new(readings: &'static [Reading], scene: &Scene, candidate: &State, estimate: &Round) -> Self {
         let frames = scene.frames[..scene.frames.len().min(MOST_FRAMES)].to_vec();
         let own = of_edges(frames.clone(), scene);
         let planes: Vec<Vec<Planes>> = SIGMAS.iter().map(|sigma| own.planes(sigma * scene.scale)).collect();
         let score = score(&own, &estimate.state, &planes).max(score(&own, candidate, &planes));
-        Self { frames, planes, candidate: *candidate, index: 0, score: score + GAIN, best: None, refining: None }
+        let (candidate, score) = (*candidate, score + GAIN);
+        Self { readings, frames, planes, candidate, index: 0, score, best: None, refining: None }
     }
 
     /// Share of the search that is done.
     pub fn progress(&self) -> f64 {
-        self.index as f64 / Reading::VIEWS.len() as f64
+        self.index as f64 / self.readings.len() as f64
     }
 
     /// Compares one reading, or refines the candidate in the best one by a round. Returns whether the search is over.
@@ -61,7 +64,7 @@ impl Reviewing {
         if let Some(refining) = &mut self.refining {
             return refining.step();
         }
-        if let Some(reading) = Reading::VIEWS.get(self.index) {
+        if let Some(reading) = self.readings.get(self.index) {
             self.compare(*reading, scene);
             self.index += 1;
             return false;
