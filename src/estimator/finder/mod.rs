@@ -31,15 +31,15 @@
 //! | `task` | parts of the search that a worker may take, and their results |
 //! | `local_optima` | ends of the registrations; the best pose and its rivals |
 //! | `local_contrast`, `silhouettes` | the methods for varying albedo |
-//! | `opening` | the halved pair in which large views are searched |
+//! | `halved_pair` | the halved pair in which large views are searched |
 //!
 //! The outcome is a [`Decision`].
 
 mod candidates;
+mod halved_pair;
 pub mod initial_pose;
 mod local_contrast;
 pub mod local_optima;
-mod opening;
 mod silhouettes;
 pub mod task;
 
@@ -60,7 +60,7 @@ use silhouettes::Anywhere;
 use task::{Finding, Task};
 
 pub use candidates::search;
-pub use opening::Opening;
+pub use halved_pair::HalvedPair;
 
 /// Share of the work that precedes local contrast.
 const BEFORE_CONTRAST: f64 = 0.75;
@@ -83,7 +83,7 @@ pub enum Beginning {
 /// Where the pose is looked for.
 enum Scope {
     /// A halved pair stands in for large views.
-    Everywhere(Option<Box<Opening>>),
+    Everywhere(Option<Box<HalvedPair>>),
     Near(Box<Near>),
 }
 
@@ -120,25 +120,25 @@ pub struct Finder {
 }
 
 impl Finder {
-    /// Starts with nothing known about the pose, in the pair or in its opening; `grid` belongs to the image that is searched.
+    /// Starts with nothing known about the pose, in the pair or in its halved pair; `grid` belongs to the image that is searched.
     ///
     /// # Errors
     /// The errors of the search, if the views allow none.
     pub fn everywhere(
         pair: &ViewPair,
         memory: &mut Memory,
-        opening: Option<Box<Opening>>,
+        halved: Option<Box<HalvedPair>>,
         grid: ImageGrid,
     ) -> Result<Self> {
-        let (pair, photometric) = match &opening {
-            Some(opening) => (&opening.pair, &opening.photometric),
+        let (pair, photometric) = match &halved {
+            Some(halved) => (&halved.pair, &halved.photometric),
             None => (pair, &*PhotometricRegistration::prepared(memory, pair)),
         };
         let optima = LocalOptima::new(EVERYWHERE.most, pair.residuals_of_noise(0.0));
         let may_vary = local_contrast::may_be_called_for(pair, photometric);
         let candidates = Candidates::new(search(pair, grid, photometric)?, optima, EVERYWHERE, may_vary);
         let phase = Phase::Candidates(Box::new(candidates));
-        Ok(Self { scope: Scope::Everywhere(opening), phase, chosen: Choice::default() })
+        Ok(Self { scope: Scope::Everywhere(halved), phase, chosen: Choice::default() })
     }
 
     /// Registers from an initial pose. A result in its region that explains the image is the decision; otherwise a finder
@@ -169,7 +169,7 @@ impl Finder {
             _ => return self.chosen.best.as_ref().map(|best| best.pose),
         };
         match &self.scope {
-            Scope::Everywhere(Some(opening)) => best.map(|best| opening.pose_out(&best)),
+            Scope::Everywhere(Some(halved)) => best.map(|best| halved.pose_out(&best)),
             _ => best,
         }
     }
@@ -253,7 +253,7 @@ impl Finder {
         mut candidates: Box<Candidates>,
     ) -> Result<Next> {
         let choice = match &mut self.scope {
-            Scope::Everywhere(Some(opening)) => candidates.advance(&opening.pair, &mut opening.photometric, |_| true),
+            Scope::Everywhere(Some(halved)) => candidates.advance(&halved.pair, &mut halved.photometric, |_| true),
             scope => {
                 let photometric = PhotometricRegistration::prepared(memory, pair);
                 candidates.advance(pair, photometric, |pose| scope.holds(pair, pose))
@@ -261,10 +261,10 @@ impl Finder {
         };
         let Some(mut choice) = choice else { return Ok(Next::Phase(Phase::Candidates(candidates))) };
         let mut looked_at = candidates.poses();
-        if let Scope::Everywhere(Some(opening)) = &mut self.scope {
+        if let Scope::Everywhere(Some(halved)) = &mut self.scope {
             let poses = looked_at.iter_mut().chain(&mut choice.rivals).chain(&mut choice.ends);
-            poses.for_each(|pose| *pose = opening.pose_out(pose));
-            choice.best = choice.best.map(|best| opening.report_out(best));
+            poses.for_each(|pose| *pose = halved.pose_out(pose));
+            choice.best = choice.best.map(|best| halved.report_out(best));
         }
         self.diagnose(pair, memory, choice, looked_at)
     }
