@@ -50,7 +50,7 @@ impl HalvedPair {
         let (depth, depth_frame) = depth.unwrap_or_else(|| (pair.depth.clone(), Frame::OWN));
         let mut options = pair.options.clone();
         options.scale = options.scale.map(|scale| scale * depth_frame.unit / image_frame.unit);
-        let pair = ViewPair { image, depth, options, prior: pair.prior.clone(), way: None };
+        let pair = ViewPair { image, depth, options, prior: pair.prior.clone(), resizing: None };
         Some(Self { photometric: PhotometricRegistration::new(&pair), pair, image: image_frame, depth: depth_frame })
     }
 

@@ -53,7 +53,7 @@ use super::decision::{Decision, Method};
 use super::pair::ViewPair;
 use super::photometric::PhotometricRegistration;
 use candidates::{Candidates, EVERYWHERE};
-use initial_pose::{Near, Nearby, Progress, TrustRegion, explains};
+use initial_pose::{InitialEvidence, InitialRegistrations, Progress, TrustRegion, explains};
 use local_contrast::CleanedImage;
 use local_optima::{Choice, LocalOptima};
 use silhouettes::Anywhere;
@@ -84,12 +84,12 @@ pub enum Beginning {
 enum Scope {
     /// A halved pair stands in for large views.
     Everywhere(Option<Box<HalvedPair>>),
-    Near(Box<Near>),
+    Near(Box<InitialEvidence>),
 }
 
 /// The current phase.
 enum Phase {
-    Nearby(Box<Nearby>),
+    Nearby(Box<InitialRegistrations>),
     Candidates(Box<Candidates>),
     Contrast(Box<ByContrast>),
     Silhouettes(Box<Anywhere>),
@@ -151,8 +151,8 @@ impl Finder {
             }
             plain => plain,
         };
-        let near = Near::new(pair, region.clone(), plain.as_deref());
-        let phase = Phase::Nearby(Box::new(Nearby::new(pair, region.clone(), plain)));
+        let near = InitialEvidence::new(pair, region.clone(), plain.as_deref());
+        let phase = Phase::Nearby(Box::new(InitialRegistrations::new(pair, region.clone(), plain)));
         Beginning::Ongoing(Box::new(Self { scope: Scope::Near(Box::new(near)), phase, chosen: Choice::default() }))
     }
 
@@ -230,7 +230,12 @@ impl Finder {
     }
 
     /// A slice of the registrations near an initial pose.
-    fn look_nearby(&mut self, pair: &ViewPair, memory: &mut Memory, mut nearby: Box<Nearby>) -> Result<Next> {
+    fn look_nearby(
+        &mut self,
+        pair: &ViewPair,
+        memory: &mut Memory,
+        mut nearby: Box<InitialRegistrations>,
+    ) -> Result<Next> {
         let progress = nearby.advance(pair, PhotometricRegistration::prepared(memory, pair))?;
         match progress {
             Progress::Ongoing => Ok(Next::Phase(Phase::Nearby(nearby))),
@@ -356,7 +361,7 @@ fn everywhere_by(silhouettes: Option<SilhouetteReport>, Choice { best, rivals, e
 
 impl Scope {
     /// Keeps the pose from silhouettes for the decision.
-    fn keep_silhouettes(&mut self, nearby: &mut Nearby) {
+    fn keep_silhouettes(&mut self, nearby: &mut InitialRegistrations) {
         if let Self::Near(near) = self {
             near.silhouettes = nearby.silhouettes();
         }
