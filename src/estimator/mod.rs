@@ -40,7 +40,7 @@ use crate::report::{Stage, Status, StepReport};
 use crate::shape::Scratch;
 use crate::view::{ColourImage, DepthMap};
 use ending::settling::{self, Settling};
-use finder::Opening;
+use finder::HalvedPair;
 use finder::initial_pose::first_pose;
 pub use finder::task::{Finding, Task};
 use pair::ViewPair;
@@ -117,7 +117,7 @@ impl Estimator {
         let pose = first_pose(&pair);
         let light = pair.known_light().copied().unwrap_or_else(|| pair.prior.mean());
         // The parts that need much more memory during construction than afterwards come first.
-        let registration = RegistrationStage::new(&pair, Opening::is_called_for(&pair));
+        let registration = RegistrationStage::new(&pair, HalvedPair::is_called_for(&pair));
         let refinement = RefinementStage::new(&pair)?;
         let shape = ShapeStage::new(&pair)?;
         let [pixels, points] = pair.lengths();

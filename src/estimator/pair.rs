@@ -16,7 +16,7 @@ pub struct ViewPair {
     pub options: Options,
     pub prior: LightPrior,
     /// Converts between the caller's image and the working image; `None` if they are the same.
-    pub way: Option<WorkingSize>,
+    pub resizing: Option<WorkingSize>,
 }
 
 impl ViewPair {
@@ -30,10 +30,10 @@ impl ViewPair {
         let size = Size::new("depth", depth.width, depth.height)?;
         // A depth map that is too large for any image is refused before anything is read.
         memory::check(Size { width: 0, height: 0 }, size)?;
-        let (image, way) = WorkingSize::of(image, depth, memory::most_image_pixels(size))?;
+        let (image, resizing) = WorkingSize::of(image, depth, memory::most_image_pixels(size))?;
         memory::check(image.size, size)?;
         let depth = DepthView::new(depth, options.trim)?;
-        Ok(Self { image, depth, options: units::options_in(way.as_ref(), options), prior, way })
+        Ok(Self { image, depth, options: units::options_in(resizing.as_ref(), options), prior, resizing })
     }
 
     /// The same views with other options.
@@ -42,9 +42,9 @@ impl ViewPair {
     /// [`ErrorKind::Range`](crate::ErrorKind) or `Size` for a prior that is not a Gaussian over lights.
     pub fn with(&self, options: Options) -> Result<Self> {
         let prior = options.light_prior()?;
-        let way = self.way.clone();
-        let options = units::options_in(way.as_ref(), options);
-        Ok(Self { image: self.image.clone(), depth: self.depth.clone(), options, prior, way })
+        let resizing = self.resizing.clone();
+        let options = units::options_in(resizing.as_ref(), options);
+        Ok(Self { image: self.image.clone(), depth: self.depth.clone(), options, prior, resizing })
     }
 
     /// The light, if it is known up to its exposure.

@@ -40,7 +40,7 @@ pub enum Attempt {
 pub struct PhotometricRegistration {
     photometric: Photometric,
     sharp: SharpNormals,
-    is_coarse: bool,
+    surfaces_settle_pose: bool,
     /// An initial pose near which registrations are held, if a single albedo does not explain the image from there.
     near: Option<PosePrior>,
 }
@@ -97,7 +97,7 @@ impl PhotometricRegistration {
         Self {
             photometric: Photometric::new(&sharp.problem(pair, is_scale_held(pair), None)),
             near: None,
-            is_coarse: sharp.noise > LARGEST_NOISE && pair.known_light().is_some(),
+            surfaces_settle_pose: sharp.noise > LARGEST_NOISE && pair.known_light().is_some(),
             sharp,
         }
     }
@@ -146,8 +146,8 @@ impl PhotometricRegistration {
     /// Whether the depth is so noisy that its normals determine the pose only roughly. Matching surfaces then
     /// determines the pose, because this averages the noise of whole surfaces. False under an unknown light, where the
     /// image's surface depends on the pose and cannot determine it.
-    pub const fn is_coarse(&self) -> bool {
-        self.is_coarse
+    pub const fn surfaces_settle_pose(&self) -> bool {
+        self.surfaces_settle_pose
     }
 
     /// Whether the depth is clean enough for its normals to reveal varying albedo. Noisy normals leave residuals as

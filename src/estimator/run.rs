@@ -1,6 +1,6 @@
 //! The state of a run, and what it remembers of its iterations.
 
-use super::finder::{Finder, Opening};
+use super::finder::{Finder, HalvedPair};
 use crate::pose::ImageGrid;
 use crate::reason::Reason;
 use crate::report::Stage;
@@ -9,7 +9,7 @@ use crate::report::Stage;
 pub enum Run {
     /// Prepares the image's grid for the search, with the coarse views if a view is large; then the search of the depth
     /// view in it. Each takes one slice.
-    Preparing(Option<Box<(ImageGrid, Option<Box<Opening>>)>>),
+    Preparing(Option<Box<(ImageGrid, Option<Box<HalvedPair>>)>>),
     /// A slice of the finder: before the first iteration, or in place of its registration.
     Searching(Box<Finder>),
     /// A stage of an iteration.

@@ -6,7 +6,7 @@ use nalgebra::Matrix3;
 use super::Estimator;
 use super::checks;
 use super::decision::Decision;
-use super::finder::{Advance, Finder, Opening};
+use super::finder::{Advance, Finder, HalvedPair};
 use super::gauge;
 use super::run::Run;
 use crate::error::Result;
@@ -23,14 +23,14 @@ impl Estimator {
         self.run = match prepared {
             None => {
                 self.history.hollow = checks::hollow(&self.pair.depth);
-                let opening = Opening::of(&self.pair).map(Box::new);
-                let image = opening.as_ref().map_or(&self.pair.image, |opening| &opening.pair.image);
-                Run::Preparing(Some(Box::new((ImageGrid::new(image)?, opening))))
+                let halved = HalvedPair::of(&self.pair).map(Box::new);
+                let image = halved.as_ref().map_or(&self.pair.image, |halved| &halved.pair.image);
+                Run::Preparing(Some(Box::new((ImageGrid::new(image)?, halved))))
             }
             Some(prepared) => {
-                let (grid, opening) = *prepared;
+                let (grid, halved) = *prepared;
                 let memory = &mut self.stages.registration.photometric;
-                Run::Searching(Box::new(Finder::everywhere(&self.pair, memory, opening, grid)?))
+                Run::Searching(Box::new(Finder::everywhere(&self.pair, memory, halved, grid)?))
             }
         };
         Ok(())

@@ -8,7 +8,7 @@
 use crate::light::{Light, Polynomial};
 use crate::numeric::{LANES, Lanes, Mask};
 use crate::shape::{
-    LARGEST_N_Z, LinearisedPixels, MOST_DESCENT_STEPS, Pixels, ShadingProblem, ShadingReport, ShadingSolver,
+    LinearisedPixels, MOST_DESCENT_STEPS, Pixels, STEEPEST_N_Z, ShadingProblem, ShadingReport, ShadingSolver,
     ShadingWeights, normalise,
 };
 use crate::view::Normals;
@@ -94,7 +94,7 @@ fn minima(pixel: &Pixels<'_>) -> Vec<Minimum> {
         let ends = ends.map(Lanes::array);
         for lane in 0..LANES {
             let (normal, objective) = (ends.map(|axis| axis[lane]), objective[lane]);
-            if normal[2].is_nan() || normal[2] > LARGEST_N_Z {
+            if normal[2].is_nan() || normal[2] > STEEPEST_N_Z {
                 continue;
             }
             match found.iter_mut().find(|minimum| is_same(minimum.normal, normal)) {

@@ -41,6 +41,6 @@ pub use integration::{
     AnchorWeight, Anchors, IntegrationOptions, IntegrationReport, IntegrationTermination, Integrator, Robustness,
     gradients,
 };
-pub(crate) use pixels::{LARGEST_N_Z, LinearisedPixels, MOST_DESCENT_STEPS, Pixels, normalise};
+pub(crate) use pixels::{LinearisedPixels, MOST_DESCENT_STEPS, Pixels, STEEPEST_N_Z, normalise};
 pub use pixels::{ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights, exposure_step, first_exposure};
 pub use refinement::{RefinementProblem, RefinementTerms, Refiner};

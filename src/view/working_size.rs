@@ -55,11 +55,11 @@ impl WorkingSize {
         }
         let working = area.working(factor);
         let is_orthographic = image.camera.is_none();
-        let mut way = Self { full, working, factor, origin: area.origin, is_orthographic, mask: object };
+        let mut resizing = Self { full, working, factor, origin: area.origin, is_orthographic, mask: object };
         let transfer = colour::transfer_of(&image.samples, image.transfer);
-        let reduced = way.reduce(&image, transfer);
+        let reduced = resizing.reduce(&image, transfer);
         let view = ColourView::new(reduced)?.with_transfer(transfer);
-        Ok((view, Some(way)))
+        Ok((view, Some(resizing)))
     }
 
     /// Means of linear intensity; leaves the usable pixels in the mask.
@@ -313,7 +313,7 @@ mod tests {
     }
 
     fn factor_of(image: &ColourImage, depth: &DepthMap, most: usize) -> f64 {
-        WorkingSize::of(image.clone(), depth, most).unwrap().1.map_or(1.0, |way| way.factor())
+        WorkingSize::of(image.clone(), depth, most).unwrap().1.map_or(1.0, |resizing| resizing.factor())
     }
 
     #[test]
@@ -348,17 +348,18 @@ mod tests {
         fine.mask = Some((0..123 * 90).map(|index| u8::from(index % 123 > 40 && index / 123 > 30)).collect());
         let mut coarse = depth(30, 22);
         coarse.mask = Some((0..30 * 22).map(|index| u8::from(index % 30 > 9 && index / 30 > 6)).collect());
-        let (view, way) = WorkingSize::of(fine, &coarse, MOST).unwrap();
-        let way = way.expect("four times as fine");
+        let (view, resizing) = WorkingSize::of(fine, &coarse, MOST).unwrap();
+        let resizing = resizing.expect("four times as fine");
         let full = Size { width: 123, height: 90 };
-        assert!((way.factor() - 4.1).abs() < 0.1 && way.factor().fract() > 0.0, "{}", way.factor());
+        assert!((resizing.factor() - 4.1).abs() < 0.1 && resizing.factor().fract() > 0.0, "{}", resizing.factor());
         for working in [0, 40, view.size.len() - 1] {
             let (column, row) = view.size.position(working);
             // The centre of the covered area, in the frame of either view.
-            let middle = |at: usize, axis: usize| way.origin[axis] as f64 + way.factor() * (at as f64 + 0.5) - 0.5;
+            let middle =
+                |at: usize, axis: usize| resizing.origin[axis] as f64 + resizing.factor() * (at as f64 + 0.5) - 0.5;
             let expected = Camera::Orthographic.ray(full, [middle(column, 0), middle(row, 1)]);
             let [x, y] = Camera::Orthographic.ray(view.size, [column as f64, row as f64]);
-            let found = way.unit() * Vector3::new(x, y, 0.0) + way.shift();
+            let found = resizing.unit() * Vector3::new(x, y, 0.0) + resizing.shift();
             assert!((found.x - expected[0]).abs() + (found.y - expected[1]).abs() < 1e-9, "{found} {expected:?}");
         }
     }
@@ -366,11 +367,11 @@ mod tests {
     #[test]
     fn working_pixels_share_the_image_out_among_them() {
         for side in [50, 60, 71, 72, 80, 158] {
-            let (view, way) = WorkingSize::of(image(side, side), &depth(40, 40), MOST).unwrap();
+            let (view, resizing) = WorkingSize::of(image(side, side), &depth(40, 40), MOST).unwrap();
             assert_eq!(view.size, Size { width: 40, height: 40 }, "{side}");
-            let way = way.expect("finer than the depth map");
+            let resizing = resizing.expect("finer than the depth map");
             let mut shares = vec![0.0; side];
-            for (pixel, share) in (0..view.size.width).flat_map(|at| way.span(at, 0)) {
+            for (pixel, share) in (0..view.size.width).flat_map(|at| resizing.span(at, 0)) {
                 assert!(share > 0.0, "{side}: {pixel}");
                 shares[pixel] += share;
             }

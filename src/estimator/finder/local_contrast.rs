@@ -122,15 +122,16 @@ pub fn conclude(
     let problem = photometric.contrast_problem(pair, image);
     let mut contrast = search.outcome(&problem)?;
     let plain = photometric.register_in(pair, image, &contrast.best.pose);
-    let is_coarse = cleaned.was_soft || !photometric.has_clean_normals();
+    let is_less_reliable = cleaned.was_soft || !photometric.has_clean_normals();
     // With blurred chromaticity or noisy normals, contrast is less reliable if photometric registration ends elsewhere.
-    if is_coarse {
+    if is_less_reliable {
         add_rival(&contrast.best, &mut contrast.rivals, plain.as_ref().map(|plain| plain.pose));
     }
     let is_believed = |plain: &PhotometricReport, search: &mut ContrastSearch| {
         is_plain(pair, plain, &contrast)
             && search.is_explained_by(&problem, &plain.pose)
-            && (!is_coarse || plain.uncertainty.largest_rotation() <= contrast.best.uncertainty.largest_rotation())
+            && (!is_less_reliable
+                || plain.uncertainty.largest_rotation() <= contrast.best.uncertainty.largest_rotation())
     };
     Some(match plain {
         Some(plain) if is_believed(&plain, search) => {

@@ -31,15 +31,15 @@
 //! | `task` | parts of the search that a worker may take, and their results |
 //! | `local_optima` | ends of the registrations; the best pose and its rivals |
 //! | `local_contrast`, `silhouettes` | the methods for varying albedo |
-//! | `opening` | the halved pair in which large views are searched |
+//! | `halved_pair` | the halved pair in which large views are searched |
 //!
 //! The outcome is a [`Decision`].
 
 mod candidates;
+mod halved_pair;
 pub mod initial_pose;
 mod local_contrast;
 pub mod local_optima;
-mod opening;
 mod silhouettes;
 pub mod task;
 
@@ -53,14 +53,14 @@ use super::decision::{Decision, Method};
 use super::pair::ViewPair;
 use super::photometric::PhotometricRegistration;
 use candidates::{Candidates, EVERYWHERE};
-use initial_pose::{Near, Nearby, Progress, TrustRegion, explains};
+use initial_pose::{InitialEvidence, InitialRegistrations, Progress, TrustRegion, explains};
 use local_contrast::CleanedImage;
 use local_optima::{Choice, LocalOptima};
 use silhouettes::Anywhere;
 use task::{Finding, Task};
 
 pub use candidates::search;
-pub use opening::Opening;
+pub use halved_pair::HalvedPair;
 
 /// Share of the work that precedes local contrast.
 const BEFORE_CONTRAST: f64 = 0.75;
@@ -83,13 +83,13 @@ pub enum Beginning {
 /// Where the pose is looked for.
 enum Scope {
     /// A halved pair stands in for large views.
-    Everywhere(Option<Box<Opening>>),
-    Near(Box<Near>),
+    Everywhere(Option<Box<HalvedPair>>),
+    Near(Box<InitialEvidence>),
 }
 
 /// The current phase.
 enum Phase {
-    Nearby(Box<Nearby>),
+    Nearby(Box<InitialRegistrations>),
     Candidates(Box<Candidates>),
     Contrast(Box<ByContrast>),
     Silhouettes(Box<Anywhere>),
@@ -120,25 +120,25 @@ pub struct Finder {
 }
 
 impl Finder {
-    /// Starts with nothing known about the pose, in the pair or in its opening; `grid` belongs to the image that is searched.
+    /// Starts with nothing known about the pose, in the pair or in its halved pair; `grid` belongs to the image that is searched.
     ///
     /// # Errors
     /// The errors of the search, if the views allow none.
     pub fn everywhere(
         pair: &ViewPair,
         memory: &mut Memory,
-        opening: Option<Box<Opening>>,
+        halved: Option<Box<HalvedPair>>,
         grid: ImageGrid,
     ) -> Result<Self> {
-        let (pair, photometric) = match &opening {
-            Some(opening) => (&opening.pair, &opening.photometric),
+        let (pair, photometric) = match &halved {
+            Some(halved) => (&halved.pair, &halved.photometric),
             None => (pair, &*PhotometricRegistration::prepared(memory, pair)),
         };
         let optima = LocalOptima::new(EVERYWHERE.most, pair.residuals_of_noise(0.0));
         let may_vary = local_contrast::may_be_called_for(pair, photometric);
         let candidates = Candidates::new(search(pair, grid, photometric)?, optima, EVERYWHERE, may_vary);
         let phase = Phase::Candidates(Box::new(candidates));
-        Ok(Self { scope: Scope::Everywhere(opening), phase, chosen: Choice::default() })
+        Ok(Self { scope: Scope::Everywhere(halved), phase, chosen: Choice::default() })
     }
 
     /// Registers from an initial pose. A result in its region that explains the image is the decision; otherwise a finder
@@ -151,8 +151,8 @@ impl Finder {
             }
             plain => plain,
         };
-        let near = Near::new(pair, region.clone(), plain.as_deref());
-        let phase = Phase::Nearby(Box::new(Nearby::new(pair, region.clone(), plain)));
+        let near = InitialEvidence::new(pair, region.clone(), plain.as_deref());
+        let phase = Phase::Nearby(Box::new(InitialRegistrations::new(pair, region.clone(), plain)));
         Beginning::Ongoing(Box::new(Self { scope: Scope::Near(Box::new(near)), phase, chosen: Choice::default() }))
     }
 
@@ -169,7 +169,7 @@ impl Finder {
             _ => return self.chosen.best.as_ref().map(|best| best.pose),
         };
         match &self.scope {
-            Scope::Everywhere(Some(opening)) => best.map(|best| opening.pose_out(&best)),
+            Scope::Everywhere(Some(halved)) => best.map(|best| halved.pose_out(&best)),
             _ => best,
         }
     }
@@ -230,7 +230,12 @@ impl Finder {
     }
 
     /// A slice of the registrations near an initial pose.
-    fn look_nearby(&mut self, pair: &ViewPair, memory: &mut Memory, mut nearby: Box<Nearby>) -> Result<Next> {
+    fn look_nearby(
+        &mut self,
+        pair: &ViewPair,
+        memory: &mut Memory,
+        mut nearby: Box<InitialRegistrations>,
+    ) -> Result<Next> {
         let progress = nearby.advance(pair, PhotometricRegistration::prepared(memory, pair))?;
         match progress {
             Progress::Ongoing => Ok(Next::Phase(Phase::Nearby(nearby))),
@@ -253,7 +258,7 @@ impl Finder {
         mut candidates: Box<Candidates>,
     ) -> Result<Next> {
         let choice = match &mut self.scope {
-            Scope::Everywhere(Some(opening)) => candidates.advance(&opening.pair, &mut opening.photometric, |_| true),
+            Scope::Everywhere(Some(halved)) => candidates.advance(&halved.pair, &mut halved.photometric, |_| true),
             scope => {
                 let photometric = PhotometricRegistration::prepared(memory, pair);
                 candidates.advance(pair, photometric, |pose| scope.holds(pair, pose))
@@ -261,10 +266,10 @@ impl Finder {
         };
         let Some(mut choice) = choice else { return Ok(Next::Phase(Phase::Candidates(candidates))) };
         let mut looked_at = candidates.poses();
-        if let Scope::Everywhere(Some(opening)) = &mut self.scope {
+        if let Scope::Everywhere(Some(halved)) = &mut self.scope {
             let poses = looked_at.iter_mut().chain(&mut choice.rivals).chain(&mut choice.ends);
-            poses.for_each(|pose| *pose = opening.pose_out(pose));
-            choice.best = choice.best.map(|best| opening.report_out(best));
+            poses.for_each(|pose| *pose = halved.pose_out(pose));
+            choice.best = choice.best.map(|best| halved.report_out(best));
         }
         self.diagnose(pair, memory, choice, looked_at)
     }
@@ -356,7 +361,7 @@ fn everywhere_by(silhouettes: Option<SilhouetteReport>, Choice { best, rivals, e
 
 impl Scope {
     /// Keeps the pose from silhouettes for the decision.
-    fn keep_silhouettes(&mut self, nearby: &mut Nearby) {
+    fn keep_silhouettes(&mut self, nearby: &mut InitialRegistrations) {
         if let Self::Near(near) = self {
             near.silhouettes = nearby.silhouettes();
         }

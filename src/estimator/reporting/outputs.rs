@@ -39,14 +39,17 @@ impl Estimator {
     #[must_use]
     pub fn image_normals(&self) -> Cow<'_, Normals> {
         let own = &self.solution.image.normals;
-        self.pair.way.as_ref().map_or(Cow::Borrowed(own), |way| Cow::Owned(way.carry_normals(own)))
+        self.pair.resizing.as_ref().map_or(Cow::Borrowed(own), |resizing| Cow::Owned(resizing.carry_normals(own)))
     }
 
     /// Depth of the image surface, NaN off the mask; in pixels with median zero for an orthographic image.
     #[must_use]
     pub fn image_depth(&self) -> Cow<'_, [f32]> {
         let own = &self.solution.image.points.z;
-        self.pair.way.as_ref().map_or(Cow::Borrowed(own), |way| Cow::Owned(way.carry(own, way.unit())))
+        self.pair
+            .resizing
+            .as_ref()
+            .map_or(Cow::Borrowed(own), |resizing| Cow::Owned(resizing.carry(own, resizing.unit())))
     }
 
     /// Refined normals of the depth view, in its own frame.
@@ -74,7 +77,7 @@ impl Estimator {
             Layer::Residual => picture::draw_numbers(&self.residual(), range, map, rgba)?,
             Layer::Refined => picture::draw_numbers(self.refined_depth(), range, map, rgba)?,
         }
-        let image = || self.pair.way.as_ref().map_or(self.image().size, WorkingSize::full);
+        let image = || self.pair.resizing.as_ref().map_or(self.image().size, WorkingSize::full);
         Ok(match layer {
             Layer::Normals | Layer::Depth | Layer::Residual => image(),
             Layer::Refined | Layer::RefinedNormals => self.depth().size,
@@ -85,7 +88,7 @@ impl Estimator {
     #[must_use]
     pub fn correspondence(&self) -> Cow<'_, [i32]> {
         let own = self.correspondences.depth_of_pixel();
-        self.pair.way.as_ref().map_or(Cow::Borrowed(own), |way| Cow::Owned(way.carry_indices(own)))
+        self.pair.resizing.as_ref().map_or(Cow::Borrowed(own), |resizing| Cow::Owned(resizing.carry_indices(own)))
     }
 
     /// |log S - predicted| of each image pixel, NaN off the mask: predicted from the measured normal of the
@@ -94,7 +97,7 @@ impl Estimator {
     #[must_use]
     pub fn residual(&self) -> Cow<'_, [f32]> {
         let own = self.residuals.of_pixels();
-        self.pair.way.as_ref().map_or(Cow::Borrowed(own), |way| Cow::Owned(way.carry(own, 1.0)))
+        self.pair.resizing.as_ref().map_or(Cow::Borrowed(own), |resizing| Cow::Owned(resizing.carry(own, 1.0)))
     }
 
     /// Log albedo of each image pixel, R, G, B interleaved: mean zero over the mask in each channel, NaN off it. Zero
@@ -119,13 +122,13 @@ impl Estimator {
 
     /// Converts the report of the last stage to the caller's units.
     pub(in crate::estimator) fn translate_report(&mut self) {
-        self.report.translate(self.pair.way.as_ref());
+        self.report.translate(self.pair.resizing.as_ref());
     }
 
     /// Converts colours of the working view to the caller's pixels.
     fn carried(&self, interleaved: Vec<f32>) -> Vec<f32> {
-        match &self.pair.way {
-            Some(way) => way.carry_colours(&interleaved),
+        match &self.pair.resizing {
+            Some(resizing) => resizing.carry_colours(&interleaved),
             None => interleaved,
         }
     }
@@ -166,7 +169,7 @@ impl Estimator {
         let place = |point: [f32; 3]| {
             let point = Vector3::from(point.map(f64::from));
             let point = if surface == Surface::Depth { self.solution.pose.apply(point) } else { point };
-            let point = self.pair.way.as_ref().map_or(point, |way| units::point_out(way, point));
+            let point = self.pair.resizing.as_ref().map_or(point, |resizing| units::point_out(resizing, point));
             <[f64; 3]>::from(point).map(|value| value as f32)
         };
         valid.flat_map(place).collect()

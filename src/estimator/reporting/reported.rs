@@ -19,8 +19,8 @@ impl Reported {
     }
 
     /// Updates the report that is given out.
-    pub fn translate(&mut self, way: Option<&WorkingSize>) {
-        self.out = way.map(|way| Box::new(units::report_out(way, &self.own)));
+    pub fn translate(&mut self, resizing: Option<&WorkingSize>) {
+        self.out = resizing.map(|resizing| Box::new(units::report_out(resizing, &self.own)));
     }
 
     /// The report as of the last [`translate`](Self::translate).

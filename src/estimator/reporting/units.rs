@@ -9,10 +9,10 @@ use crate::report::StepReport;
 use crate::view::WorkingSize;
 
 /// The options for the working view.
-pub fn options_in(way: Option<&WorkingSize>, mut options: Options) -> Options {
-    let Some(way) = way else { return options };
-    let (unit, shift) = (way.unit(), way.shift());
-    options.correspondence_distance = options.correspondence_distance.map(|distance| distance / way.factor());
+pub fn options_in(resizing: Option<&WorkingSize>, mut options: Options) -> Options {
+    let Some(resizing) = resizing else { return options };
+    let (unit, shift) = (resizing.unit(), resizing.shift());
+    options.correspondence_distance = options.correspondence_distance.map(|distance| distance / resizing.factor());
     options.scale = options.scale.map(|scale| scale / unit);
     if let Start::Pose { scale, translation, .. } = &mut options.start {
         *scale = scale.map(|scale| scale / unit);
@@ -22,27 +22,27 @@ pub fn options_in(way: Option<&WorkingSize>, mut options: Options) -> Options {
 }
 
 /// A pose in the caller's units.
-pub fn pose_out(way: &WorkingSize, pose: &Similarity) -> Similarity {
+pub fn pose_out(resizing: &WorkingSize, pose: &Similarity) -> Similarity {
     Similarity {
-        scale: way.unit() * pose.scale,
+        scale: resizing.unit() * pose.scale,
         rotation: pose.rotation,
-        translation: point_out(way, pose.translation),
+        translation: point_out(resizing, pose.translation),
     }
 }
 
 /// A point of the colour view's frame in the caller's units.
-pub fn point_out(way: &WorkingSize, point: Vector3<f64>) -> Vector3<f64> {
-    way.unit() * point + way.shift()
+pub fn point_out(resizing: &WorkingSize, point: Vector3<f64>) -> Vector3<f64> {
+    resizing.unit() * point + resizing.shift()
 }
 
 /// The report in the caller's units.
-pub fn report_out(way: &WorkingSize, report: &StepReport) -> StepReport {
+pub fn report_out(resizing: &WorkingSize, report: &StepReport) -> StepReport {
     let mut report = report.clone();
-    report.pose = pose_out(way, &report.pose);
-    report.rivals.iter_mut().for_each(|rival| *rival = pose_out(way, rival));
+    report.pose = pose_out(resizing, &report.pose);
+    report.rivals.iter_mut().for_each(|rival| *rival = pose_out(resizing, rival));
     if let Some(uncertainty) = &mut report.uncertainty {
         for sigma in uncertainty.translation.iter_mut().chain([&mut uncertainty.scale]).flatten() {
-            *sigma *= way.unit();
+            *sigma *= resizing.unit();
         }
     }
     report

@@ -39,11 +39,16 @@ impl Registered {
     }
 
     /// Pose and light of a photometric registration.
-    fn photometric(pair: &ViewPair, found: &PhotometricReport, present: &Similarity, is_coarse: bool) -> Self {
+    fn photometric(
+        pair: &ViewPair,
+        found: &PhotometricReport,
+        present: &Similarity,
+        surfaces_settle_pose: bool,
+    ) -> Self {
         Self {
             light: Some(found.light),
             // Normals flattened by noise bias the exposure, so the stages find it again.
-            exposure: (!is_coarse).then_some(found.exposure),
+            exposure: (!surfaces_settle_pose).then_some(found.exposure),
             ..Self::of(with_gauge_of(pair, found.pose, present), Some(found.uncertainty.clone()))
         }
     }
@@ -89,28 +94,30 @@ impl RegistrationStage {
     /// The registration that this pair needs now: with noisy depth, photometric registration finds the pose and ICP settles it.
     pub fn kind(&self, pair: &ViewPair) -> Registration {
         match pair.options.registration {
-            Registration::Joint if self.is_coarse() && self.decided_photometrically().is_some() => Registration::Icp,
+            Registration::Joint if self.surfaces_settle_pose() && self.decided_photometrically().is_some() => {
+                Registration::Icp
+            }
             asked => asked,
         }
     }
 
     /// The method that the pose rests on; `None` before the decision, and if surfaces settle the pose.
     pub fn method(&self) -> Option<&Method> {
-        let settled_by_surfaces = |by: &Method| self.is_coarse() && matches!(by, Method::Photometric(_));
+        let settled_by_surfaces = |by: &Method| self.surfaces_settle_pose() && matches!(by, Method::Photometric(_));
         self.decision.as_ref().map(|decision| &decision.by).filter(|by| !settled_by_surfaces(by))
     }
 
     /// Result of the photometric registration, unless depth noise leaves pose and light to other stages.
     pub fn found_photometrically(&self) -> Option<&PhotometricReport> {
-        self.decided_photometrically().filter(|_| !self.is_coarse())
+        self.decided_photometrically().filter(|_| !self.surfaces_settle_pose())
     }
 
     fn decided_photometrically(&self) -> Option<&PhotometricReport> {
         self.decision.as_ref().and_then(Decision::photometric)
     }
 
-    fn is_coarse(&self) -> bool {
-        self.photometric.as_ref().is_some_and(PhotometricRegistration::is_coarse)
+    fn surfaces_settle_pose(&self) -> bool {
+        self.photometric.as_ref().is_some_and(PhotometricRegistration::surfaces_settle_pose)
     }
 
     /// The best measured normals of the depth view.
@@ -140,7 +147,7 @@ impl RegistrationStage {
                 if self.region.is_some() {
                     check_size(pair, &found.pose, present)?;
                 }
-                Some(Registered::photometric(pair, found, present, self.is_coarse()))
+                Some(Registered::photometric(pair, found, present, self.surfaces_settle_pose()))
             }
         };
         self.decision = Some(decision);
@@ -207,7 +214,7 @@ impl RegistrationStage {
         albedo: &AlbedoStage,
         start: &Similarity,
     ) -> Result<Option<Registered>, Reason> {
-        let is_coarse = self.is_coarse();
+        let surfaces_settle_pose = self.surfaces_settle_pose();
         let (Some(photometric), Some(Decision { by, ends, .. })) = (&mut self.photometric, &mut self.decision) else {
             return Ok(None);
         };
@@ -220,7 +227,7 @@ impl RegistrationStage {
             Method::Photometric(found) => {
                 photometric.register_again(pair, found, start, ends)?;
                 check_size(pair, &found.pose, start)?;
-                Ok(Some(Registered::photometric(pair, found, start, is_coarse)))
+                Ok(Some(Registered::photometric(pair, found, start, surfaces_settle_pose)))
             }
         }
     }

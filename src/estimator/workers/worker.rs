@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::estimator::finder::initial_pose::TrustRegion;
 use crate::estimator::finder::local_optima::RegisteredCandidate;
-use crate::estimator::finder::{Opening, search};
+use crate::estimator::finder::{HalvedPair, search};
 use crate::estimator::pair::ViewPair;
 use crate::estimator::photometric::PhotometricRegistration;
 use crate::options::Options;
@@ -16,13 +16,13 @@ use crate::estimator::finder::task::{Finding, Found, Task, Work};
 /// The views that are searched and whose candidates are registered.
 enum Searched {
     Views(Box<PhotometricRegistration>),
-    Opening(Box<Opening>),
+    Halved(Box<HalvedPair>),
 }
 
 impl Searched {
     fn of(pair: &ViewPair) -> Self {
-        match Opening::of(pair) {
-            Some(opening) => Self::Opening(Box::new(opening)),
+        match HalvedPair::of(pair) {
+            Some(halved) => Self::Halved(Box::new(halved)),
             None => Self::Views(Box::new(PhotometricRegistration::new(pair))),
         }
     }
@@ -31,7 +31,7 @@ impl Searched {
     fn parts<'a>(&'a mut self, pair: &'a ViewPair) -> (&'a ViewPair, &'a mut PhotometricRegistration) {
         match self {
             Self::Views(photometric) => (pair, photometric),
-            Self::Opening(opening) => (&opening.pair, &mut opening.photometric),
+            Self::Halved(halved) => (&halved.pair, &mut halved.photometric),
         }
     }
 }

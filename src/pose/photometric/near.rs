@@ -31,7 +31,7 @@ const SCALES: [f64; 4] = [6.0, 6.0, 12.0, 20.0];
 const DISTANCE_FIRST: f64 = 0.1;
 
 /// The mask and the points tested against it; owns its memory.
-pub(super) struct NearTerms {
+pub(super) struct MaskAndPrior {
     /// `None` if the whole image is the object.
     silhouette: Option<Silhouette>,
     points: Vec<Vector3<f64>>,
@@ -40,7 +40,7 @@ pub(super) struct NearTerms {
 
 /// Weights of the terms at one state.
 #[derive(Clone, Copy)]
-pub(super) struct NearWeights {
+pub(super) struct MaskAndPriorWeights {
     /// Sum of the weights of all points.
     pub points: f64,
     /// The robust scale, log units.
@@ -51,7 +51,7 @@ pub(super) struct NearWeights {
     pub level: usize,
 }
 
-impl NearTerms {
+impl MaskAndPrior {
     /// Built from the mask and the points of a problem.
     pub fn new(problem: &PhotometricProblem<'_>) -> Self {
         let object = &problem.image.whole.object;
@@ -70,11 +70,11 @@ impl NearTerms {
         prior: &PosePrior,
         pose: &Similarity,
         frame: &Frame,
-        weights: NearWeights,
+        weights: MaskAndPriorWeights,
     ) -> Sums {
         let mut sums = Sums::new();
         self.add_mask(problem, pose, frame, weights, &mut sums);
-        let NearWeights { noise, level, .. } = weights;
+        let MaskAndPriorWeights { noise, level, .. } = weights;
         let along = if level > 0 { DISTANCE_FIRST * prior.along } else { prior.along };
         PosePrior { along, ..*prior }.for_each(self.middle, pose, frame, |row, residual| {
             sums.add(row, residual, CORRELATED * noise * noise, f64::INFINITY);
@@ -88,11 +88,11 @@ impl NearTerms {
         problem: &PhotometricProblem<'_>,
         pose: &Similarity,
         frame: &Frame,
-        weights: NearWeights,
+        weights: MaskAndPriorWeights,
         sums: &mut Sums,
     ) {
         let Some(silhouette) = &self.silhouette else { return };
-        let NearWeights { points, robust_scale, level, .. } = weights;
+        let MaskAndPriorWeights { points, robust_scale, level, .. } = weights;
         let scale = SCALES[level];
         let share = OFF_WEIGHT * points / self.points.len().max(1) as f64 * (robust_scale / scale).powi(2);
         for point in &self.points {
@@ -116,7 +116,8 @@ mod tests {
     use crate::view::{ColourImage, ColourSamples, ColourView, DepthMap, DepthSamples, DepthView, Lens, Pinhole};
 
     const SIDE: usize = 40;
-    const WEIGHTS: NearWeights = NearWeights { points: 100.0, robust_scale: 0.1, noise: 0.02, level: 0 };
+    const WEIGHTS: MaskAndPriorWeights =
+        MaskAndPriorWeights { points: 100.0, robust_scale: 0.1, noise: 0.02, level: 0 };
 
     fn lens() -> Pinhole {
         Pinhole { fx: 50.0, fy: 50.0, cx: 19.5, cy: 19.5, lens: Lens::None }
@@ -169,7 +170,7 @@ mod tests {
             scale_is_held: true,
             near: Some(prior),
         };
-        NearTerms::new(&problem).sums(&problem, &prior, pose, frame, WEIGHTS)
+        MaskAndPrior::new(&problem).sums(&problem, &prior, pose, frame, WEIGHTS)
     }
 
     const FRAME: Frame = Frame { centre: Vector3::new(0.0, 0.0, 1.0), length: 0.1 };

@@ -3,7 +3,7 @@
 use super::covariance::{Noise, Tiles};
 use super::equations::ReducedSystem;
 use super::evaluation::Evaluation;
-use super::near::{NearTerms, NearWeights};
+use super::near::{MaskAndPrior, MaskAndPriorWeights};
 use super::phase::Phase;
 use super::points::{Sampling, VisiblePoints};
 use super::problem::{COARSEST, COARSEST_NEAR, PhotometricOptions, PhotometricProblem, PhotometricTermination};
@@ -32,8 +32,8 @@ const LIGHT_ROUNDS: usize = 6;
 const FEWEST_POINTS: usize = 14;
 
 /// Terms and albedo for a problem with an initial pose.
-struct Near {
-    terms: NearTerms,
+struct HeldNear {
+    terms: MaskAndPrior,
     relief: Relief,
 }
 
@@ -46,7 +46,7 @@ pub struct Photometric {
     instruments: SplineImage,
     pub(super) points: VisiblePoints,
     /// The terms about an initial pose, once a problem has one.
-    near: Option<Box<Near>>,
+    near: Option<Box<HeldNear>>,
     pub(super) tiles: Tiles,
     /// log S at the points, as long as the pose does not change.
     samples: Vec<Samples>,
@@ -154,7 +154,9 @@ impl Photometric {
         }
         match &mut self.near {
             Some(near) => near.relief.clear(),
-            none => *none = Some(Box::new(Near { terms: NearTerms::new(problem), relief: Relief::new(problem) })),
+            none => {
+                *none = Some(Box::new(HeldNear { terms: MaskAndPrior::new(problem), relief: Relief::new(problem) }))
+            }
         }
     }
 
@@ -193,7 +195,7 @@ impl Photometric {
     ) -> Option<Sums> {
         let (prior, near) = problem.near.as_ref().zip(self.near.as_ref())?;
         let (points, robust_scale) = (self.points.weight(), self.weighting.robust_scale);
-        let weights = NearWeights { points, robust_scale, noise: self.noise.residuals, level };
+        let weights = MaskAndPriorWeights { points, robust_scale, noise: self.noise.residuals, level };
         Some(near.terms.sums(problem, prior, pose, frame, weights))
     }
 

@@ -4,5 +4,5 @@ mod exposure;
 mod shading;
 
 pub use exposure::{exposure_step, first_exposure};
-pub(crate) use shading::{LARGEST_N_Z, LinearisedPixels, MOST_DESCENT_STEPS, Pixels, normalise};
+pub(crate) use shading::{LinearisedPixels, MOST_DESCENT_STEPS, Pixels, STEEPEST_N_Z, normalise};
 pub use shading::{ShadingProblem, ShadingReport, ShadingSolver, ShadingWeights};

@@ -70,8 +70,8 @@ pub struct ShadingSolver {
 
 /// Number of directions on the hemisphere that are compared: 5 degrees apart, well within the basin of the local solve.
 const DIRECTIONS: usize = 600;
-/// n_z of the flattest direction. Closer to the edge of the hemisphere, a surface is too steep to be seen in a pixel.
-pub(crate) const LARGEST_N_Z: f32 = -0.05;
+/// n_z of the steepest direction. Closer to the edge of the hemisphere, a surface is too steep to be seen in a pixel.
+pub(crate) const STEEPEST_N_Z: f32 = -0.05;
 /// Largest number of trials of one pixel in one solve. The paper allows 1000 and needs 300; Gauss-Newton needs about
 /// five.
 pub(crate) const MOST_DESCENT_STEPS: usize = 30;
@@ -97,10 +97,10 @@ impl ShadingSolver {
     #[must_use]
     pub fn new() -> Self {
         let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
-        let flattest = f64::from(LARGEST_N_Z);
+        let steepest = f64::from(STEEPEST_N_Z);
         let directions: Vec<[f32; 3]> = (0..DIRECTIONS)
             .map(|index| {
-                let z = flattest + (-1.0 - flattest) * (index as f64 + 0.5) / DIRECTIONS as f64;
+                let z = steepest + (-1.0 - steepest) * (index as f64 + 0.5) / DIRECTIONS as f64;
                 let radius = (1.0 - z * z).sqrt();
                 let (sin, cos) = (golden * index as f64).sin_cos();
                 [radius * cos, radius * sin, z].map(|value| value as f32)

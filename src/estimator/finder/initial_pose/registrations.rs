@@ -35,7 +35,7 @@ enum Step {
 }
 
 /// The steps around an initial pose.
-pub struct Nearby {
+pub struct InitialRegistrations {
     region: TrustRegion,
     step: Step,
     /// Whether the registration of this step is in progress.
@@ -47,7 +47,7 @@ pub struct Nearby {
     search: Option<Search>,
 }
 
-impl Nearby {
+impl InitialRegistrations {
     pub fn new(pair: &ViewPair, region: TrustRegion, plain: Option<Box<PhotometricReport>>) -> Self {
         let optima = LocalOptima::new(NEARBY.most + 4, pair.residuals_of_noise(0.0));
         Self {
@@ -191,7 +191,7 @@ mod tests {
             let end = photometric.register_candidate(&pair, &start);
             assert_eq!(end.is_some(), is_registered);
             assert!(end.is_none_or(|end| !region.holds(&pair, &end.pose)));
-            let mut nearby = Nearby::new(&pair, region, None);
+            let mut nearby = InitialRegistrations::new(&pair, region, None);
             nearby.judge(&pair, &mut photometric);
             nearby.step = Step::FromSilhouettes(start);
             while matches!(nearby.step, Step::FromSilhouettes(_)) {

@@ -13,8 +13,8 @@ use crate::view::{ColourView, DepthView};
 /// 640x480 (docs/lab/thresholds.md).
 const MOST_PIXELS: usize = 128 * 128;
 
-/// A coarser pair, its photometric registration, and the transformation from its frames to those of the views.
-pub struct Opening {
+/// The halved pair, its photometric registration, and the transformation from its frames to those of the views.
+pub struct HalvedPair {
     pub pair: ViewPair,
     pub photometric: PhotometricRegistration,
     image: Frame,
@@ -28,13 +28,13 @@ struct Frame {
     origin: Vector3<f64>,
 }
 
-impl Opening {
+impl HalvedPair {
     /// Whether nothing is known about the pose and a view is large.
     pub fn is_called_for(pair: &ViewPair) -> bool {
         pair.options.start == Start::Search && (is_large_image(&pair.image) || is_large_depth(&pair.depth))
     }
 
-    /// The opening of a pair with a large view; `None` if the pair itself is searched.
+    /// The halved pair for a large view; `None` if the pair itself is searched.
     #[inline(never)]
     pub fn of(pair: &ViewPair) -> Option<Self> {
         if !Self::is_called_for(pair) {
@@ -50,7 +50,7 @@ impl Opening {
         let (depth, depth_frame) = depth.unwrap_or_else(|| (pair.depth.clone(), Frame::OWN));
         let mut options = pair.options.clone();
         options.scale = options.scale.map(|scale| scale * depth_frame.unit / image_frame.unit);
-        let pair = ViewPair { image, depth, options, prior: pair.prior.clone(), way: None };
+        let pair = ViewPair { image, depth, options, prior: pair.prior.clone(), resizing: None };
         Some(Self { photometric: PhotometricRegistration::new(&pair), pair, image: image_frame, depth: depth_frame })
     }
 

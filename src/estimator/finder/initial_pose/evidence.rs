@@ -1,6 +1,6 @@
 //! The decision near an initial pose, from what the registrations near it and the other methods found.
 
-use super::nearby::Nearby;
+use super::registrations::InitialRegistrations;
 use super::trust_region::TrustRegion;
 use crate::error::Result;
 use crate::estimator::decision::{Decision, Method, Staying};
@@ -12,7 +12,7 @@ use crate::estimator::photometric::PhotometricRegistration;
 use crate::pose::{PhotometricReport, SilhouetteReport, Similarity};
 
 /// What is known about the surroundings of an initial pose.
-pub struct Near {
+pub struct InitialEvidence {
     pub region: TrustRegion,
     /// The pose registered from the initial one, if it leaves no more than the image's own noise.
     noisy: Option<Similarity>,
@@ -20,7 +20,7 @@ pub struct Near {
     pub silhouettes: Option<Box<SilhouetteReport>>,
 }
 
-impl Near {
+impl InitialEvidence {
     /// The region of an initial pose, with the registration from that pose if it ended there.
     pub fn new(pair: &ViewPair, region: TrustRegion, plain: Option<&PhotometricReport>) -> Self {
         let noisy = plain.filter(|found| pair.residuals(found).is_noise()).map(|found| found.pose);
@@ -34,9 +34,9 @@ impl Near {
     }
 
     /// Repeats the registrations, held near the initial pose.
-    pub fn begin_again(&mut self, pair: &ViewPair, photometric: &mut PhotometricRegistration) -> Nearby {
+    pub fn begin_again(&mut self, pair: &ViewPair, photometric: &mut PhotometricRegistration) -> InitialRegistrations {
         photometric.keep_near(self.region.prior(pair));
-        Nearby::again(pair, self.region.clone(), self.silhouettes.take())
+        InitialRegistrations::again(pair, self.region.clone(), self.silhouettes.take())
     }
 
     /// Takes the first pose within the trust region: from local contrast, the image or silhouettes. Otherwise keeps the initial pose.
