@@ -13,12 +13,9 @@ import { type RasterKind, rasterKind } from "./formats/headerless.js";
 import { readJpeg, readWebp } from "./formats/jpeg.js";
 import { MOST_BYTES } from "./formats/limits.js";
 import { archiveText, matrixText } from "./formats/npy-matrix.js";
-import { npyPicture, npzPicture } from "./formats/npy.js";
 import type { Cloud, Picture, Points } from "./formats/picture.js";
 import { pngPicture } from "./formats/png.js";
-import { readPfm, readPnm } from "./formats/pnm.js";
 import { isRawName, pointsRefused, rawRefused, readColmapMap, readRaw, sizeInName } from "./formats/raw.js";
-import { readTable } from "./formats/table.js";
 import { textOf } from "./formats/decode.js";
 import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
 import { once } from "./once.js";
@@ -35,6 +32,9 @@ const texts = once(() => import("./formats/text.js"));
 const clouds = () => import("./formats/pointclouds.js");
 const exr = once(() => import("./formats/exr.js"));
 const tiff = once(() => import("./formats/tiff.js"));
+const npy = once(() => import("./formats/npy.js"));
+const pnm = once(() => import("./formats/pnm.js"));
+const tables = once(() => import("./formats/table.js"));
 const CLOUDS: Record<"ply" | "pcd" | "las", (bytes: Uint8Array) => Promise<Cloud | Points>> = {
   ply: async (bytes) => (await clouds()).readPly(bytes),
   pcd: async (bytes) => (await clouds()).readPcd(bytes),
@@ -51,12 +51,12 @@ const PICTURES: Record<
   webp: readWebp,
   tiff: async (bytes) => (await tiff()).readTiff(bytes),
   exr: async (bytes, { as }) => (await exr()).readExr(bytes, as === "depth"),
-  pfm: readPfm,
-  pnm: readPnm,
-  npy: (bytes) => npyPicture(bytes),
-  npz: npzPicture,
+  pfm: async (bytes) => (await pnm()).readPfm(bytes),
+  pnm: async (bytes) => (await pnm()).readPnm(bytes),
+  npy: async (bytes) => (await npy()).npyPicture(bytes),
+  npz: async (bytes) => (await npy()).npzPicture(bytes),
   colmap: readColmapMap,
-  table: readTable,
+  table: async (bytes) => (await tables()).readTable(bytes),
 };
 
 /** Whether a file holds pixels or points rather than a text of cameras and poses. */

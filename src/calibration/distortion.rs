@@ -5,7 +5,7 @@
 //! likelihoods of the depth discontinuities are compared.
 
 use super::planes::Planes;
-use super::registration::{Round, Scene, Start};
+use super::registration::{Round, Scene};
 use crate::view::Lens;
 
 /// Terms k1 that are tried. The smallest move the corner of a common image by ten pixels, and the largest belong to
@@ -40,11 +40,7 @@ fn score(scene: &mut Scene, round: &Round, lens: Lens, planes: &[Vec<Planes>]) -
 
 fn score_from(scene: &mut Scene, round: &Round, lens: Lens, planes: &[Vec<Planes>]) -> f64 {
     scene.frames.iter_mut().for_each(|frame| frame.camera.lens = lens);
-    let mut start = Start { round: *round, discontinuities: vec![], score: 0.0 };
-    for (sigma, planes) in SIGMAS.iter().zip(planes) {
-        scene.find_anew(&mut start);
-        scene.approach(&mut start, sigma * scene.scale, planes);
-    }
+    let score = scene.registered(*round, &SIGMAS, planes).score;
     scene.frames.iter_mut().for_each(|frame| frame.camera.lens = Lens::None);
-    start.score
+    score
 }

@@ -50,7 +50,7 @@ pub(super) struct Frame {
     /// Width of a pixel of `planes` in pixels of the image as given.
     pub pixel: f64,
     /// Standard deviation of 1 / z, in 1 / m. It is about the same at all depths for cameras that measure disparities.
-    pub noise: f64,
+    noise: f64,
 }
 
 /// Noise of the inverse depth of a raster of points. The inverse depth of a plane is linear, whatever its slope.
@@ -84,10 +84,9 @@ impl Frame {
         }
     }
 
-    /// The frame with other points, which are samples of the same pixels.
-    pub fn with_points(self, points: Vec<[f32; 3]>) -> Self {
-        let noise = noise(self.grid, &points);
-        Self { points, noise, ..self }
+    /// Measures the noise anew, after the points have changed.
+    pub fn measure_noise(&mut self) {
+        self.noise = noise(self.grid, &self.points);
     }
 
     /// Column and row of the depth map at which the sample of a cell was measured.

@@ -67,15 +67,15 @@ impl Turn {
         }
     }
 
-    /// Values of a raster after the turn.
-    fn of<T: Copy>(self, size: Size, values: &[T]) -> Vec<T> {
+    /// For each pixel after the turn, its index in a raster of this size.
+    fn sources(self, size: Size) -> Vec<usize> {
         let turned = self.size(size);
-        let mut out = values.to_vec();
-        for (index, value) in values.iter().enumerate() {
+        let mut sources = vec![0; size.len()];
+        for index in 0..size.len() {
             let (column, row) = self.place(size, size.position(index));
-            out[turned.index(column, row)] = *value;
+            sources[turned.index(column, row)] = index;
         }
-        out
+        sources
     }
 }
 
@@ -104,80 +104,87 @@ impl Reading {
 
     /// An image, possibly blurred, in this reading.
     pub(super) fn planes(self, planes: &Planes) -> Planes {
-        let Some(turn) = self.image_turn() else { return planes.clone() };
-        Planes { size: turn.size(planes.size), pixels: turn.of(planes.size, &planes.pixels) }
+        let mut read = planes.clone();
+        if let Some(turn) = self.image_turn() {
+            read.size = turn.size(planes.size);
+            read.pixels.iter_mut().zip(turn.sources(planes.size)).for_each(|(to, from)| *to = planes.pixels[from]);
+        }
+        read
     }
 
     /// A frame in this reading; `None` if it cannot be read so, or nothing suggests it.
     pub(super) fn frame(self, frame: &Frame) -> Option<Frame> {
-        let image_size = frame.planes.size;
+        let mut read = frame.clone();
+        let size = frame.planes.size;
         if let Some(turn) = self.image_turn() {
-            let image_mask = frame.image_mask.as_ref().map(|mask| turn.of(image_size, mask));
-            return Some(Frame { planes: self.planes(&frame.planes), image_mask, ..frame.clone() });
+            read.planes = self.planes(&frame.planes);
+            if let (Some(to), Some(mask)) = (&mut read.image_mask, &frame.image_mask) {
+                to.iter_mut().zip(turn.sources(size)).for_each(|(to, from)| *to = mask[from]);
+            }
+            return Some(read);
         }
         if let Some(turn) = self.depth_turn() {
-            return with_map_turned(frame, turn);
+            turn_map(turn, frame, &mut read);
         }
-        let of_camera = |camera| Some(Frame { camera, ..frame.clone() });
         match self {
-            Self::ImageResized => resized(&frame.camera, image_size).and_then(of_camera),
-            Self::ImageCropped => cropped(&frame.camera, image_size).and_then(of_camera),
-            Self::DepthResized => with_depth_camera(frame, resized(&frame.depth_camera?, frame.map)?),
-            Self::DepthCropped => with_depth_camera(frame, cropped(&frame.depth_camera?, frame.map)?),
-            Self::RayLength => {
-                frame.depth_camera?;
-                Some(with_points(frame, |p| {
-                    let [x, y, z] = p.map(f64::from);
-                    p.map(|value| value * (z / x.hypot(y).hypot(z)) as f32)
-                }))
-            }
-            Self::DepthMillimetres => {
-                (median_depth(frame) > usual_depths(frame.is_cloud)[1]).then(|| scaled(frame, 0.001))
-            }
-            Self::DepthMetres => (median_depth(frame) < usual_depths(frame.is_cloud)[0]).then(|| scaled(frame, 1000.0)),
-            _ => None,
+            Self::ImageResized => read.camera = resized(&frame.camera, size)?,
+            Self::ImageCropped => read.camera = cropped(&frame.camera, size)?,
+            Self::DepthResized => read.depth_camera = Some(resized(&frame.depth_camera?, frame.map)?),
+            Self::DepthCropped => read.depth_camera = Some(cropped(&frame.depth_camera?, frame.map)?),
+            Self::DepthMillimetres if median_depth(frame) <= usual_depths(frame.is_cloud)[1] => return None,
+            Self::DepthMetres if median_depth(frame) >= usual_depths(frame.is_cloud)[0] => return None,
+            _ => {}
         }
+        self.read_points(&mut read)?;
+        Some(read)
+    }
+
+    /// Reads the points anew, from their depths and the frame's raster and depth camera.
+    fn read_points(self, frame: &mut Frame) -> Option<()> {
+        let factor = match self {
+            Self::ImageResized | Self::ImageCropped => return Some(()),
+            Self::DepthMillimetres => 0.001,
+            Self::DepthMetres => 1000.0,
+            _ => 0.0,
+        };
+        for index in 0..frame.points.len() {
+            let point = frame.points[index];
+            frame.points[index] = if factor > 0.0 {
+                point.map(|value| factor * value)
+            } else if self == Self::RayLength {
+                frame.depth_camera?;
+                let [x, y, z] = point;
+                point.map(|value| value * (z / x.hypot(y).hypot(z)))
+            } else {
+                on_ray(&frame.depth_camera?, frame.place(index), point[2])
+            };
+        }
+        frame.measure_noise();
+        Some(())
     }
 }
 
-fn with_points(frame: &Frame, change: impl Fn([f32; 3]) -> [f32; 3]) -> Frame {
-    frame.clone().with_points(frame.points.iter().map(|point| change(*point)).collect())
-}
-
-fn scaled(frame: &Frame, factor: f32) -> Frame {
-    with_points(frame, |point| point.map(|value| factor * value))
+/// Turns the depth map, but leaves its points on their rays.
+fn turn_map(turn: Turn, frame: &Frame, read: &mut Frame) {
+    (read.grid, read.map) = (turn.size(frame.grid), turn.size(frame.map));
+    if read.grid != frame.grid {
+        read.cell.swap(0, 1);
+    }
+    for (to, from) in turn.sources(frame.grid).into_iter().enumerate() {
+        read.points[to] = frame.points[from];
+        if !frame.places.is_empty() {
+            read.places[to] = turn.place(frame.map, frame.place(from));
+        }
+        if let (Some(read), Some(intensity)) = (&mut read.intensity, &frame.intensity) {
+            read[to] = intensity[from];
+        }
+    }
 }
 
 fn median_depth(frame: &Frame) -> f32 {
     let mut distances: Vec<f32> =
         frame.points.iter().filter(|point| !point[2].is_nan()).map(|[x, y, z]| x.hypot(*y).hypot(*z)).collect();
     crate::numeric::quantile(&mut distances, 0.5)
-}
-
-/// The same depths on the rays of other pixels.
-fn with_map_turned(frame: &Frame, turn: Turn) -> Option<Frame> {
-    let camera = frame.depth_camera?;
-    let (grid, map) = (turn.size(frame.grid), turn.size(frame.map));
-    let places: Vec<(usize, usize)> =
-        (0..frame.grid.len()).map(|index| turn.place(frame.map, frame.place(index))).collect();
-    let points: Vec<[f32; 3]> =
-        frame.points.iter().zip(&places).map(|(point, place)| on_ray(&camera, *place, point[2])).collect();
-    let turned = Frame {
-        grid,
-        map,
-        cell: if grid == frame.grid { frame.cell } else { [frame.cell[1], frame.cell[0]] },
-        places: if frame.places.is_empty() { vec![] } else { turn.of(frame.grid, &places) },
-        intensity: frame.intensity.as_ref().map(|intensity| turn.of(frame.grid, intensity)),
-        ..frame.clone()
-    };
-    Some(turned.with_points(turn.of(frame.grid, &points)))
-}
-
-/// The same depths on the rays of another camera.
-fn with_depth_camera(frame: &Frame, camera: Pinhole) -> Option<Frame> {
-    let points = (0..frame.grid.len()).map(|index| on_ray(&camera, frame.place(index), frame.points[index][2]));
-    let points = points.collect();
-    Some(Frame { depth_camera: Some(camera), ..frame.clone() }.with_points(points))
 }
 
 /// The point at a depth on the ray of a pixel; NaN without a depth or a ray.
@@ -280,27 +287,35 @@ mod tests {
         // Twice as high, and cut at the sides to a square.
         let square = Pinhole { cx: 7.5, ..wide };
         assert_eq!(cropped(&square, SIZE).unwrap().fx, 10.0);
-        let frame = Frame { camera: wide, ..frame() };
+        let mut frame = frame();
+        frame.camera = wide;
         assert_eq!(Reading::ImageResized.frame(&frame).unwrap().camera.fx, 10.0);
         assert!(Reading::DepthResized.frame(&frame).is_none());
     }
 
     #[test]
     fn lengths_along_rays_and_other_units_become_depths() {
-        let lengths = with_points(&frame(), |p| {
+        let with = |change: fn([f32; 3]) -> [f32; 3]| {
+            let mut frame = frame();
+            frame.points.iter_mut().for_each(|point| *point = change(*point));
+            frame
+        };
+        let lengths = with(|p| {
             let along = (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]).sqrt() / p[2];
             p.map(|value| value * along)
         });
         let found = Reading::RayLength.frame(&lengths).unwrap();
         found.points.iter().zip(&frame().points).for_each(|(a, b)| assert!((a[2] - b[2]).abs() < 1e-3));
-        let [small, large] = [0.001, 1000.0].map(|factor| scaled(&frame(), factor));
+        let small = with(|point| point.map(|value| 0.001 * value));
+        let large = with(|point| point.map(|value| 1000.0 * value));
         assert!(
             (median_depth(&Reading::DepthMetres.frame(&small).unwrap()) / median_depth(&frame()) - 1.0).abs() < 1e-5
         );
         assert!(Reading::DepthMillimetres.frame(&large).is_some());
         assert!(Reading::DepthMetres.frame(&frame()).is_none() && Reading::DepthMillimetres.frame(&frame()).is_none());
         // A cloud has no rays of pixels.
-        let cloud = Frame { depth_camera: None, ..frame() };
+        let mut cloud = frame();
+        cloud.depth_camera = None;
         let is_of_map = |reading: &Reading| reading.frame(&cloud).is_none();
         assert!([Reading::RayLength, Reading::DepthMirrored, Reading::DepthResized].iter().all(is_of_map));
     }

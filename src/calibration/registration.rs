@@ -314,6 +314,16 @@ impl Scene {
         }
     }
 
+    /// The registration of a pose by its edges, level by level, with the images blurred for each level.
+    pub fn registered(&self, round: Round, sigmas: &[f64], planes: &[Vec<Planes>]) -> Start {
+        let mut start = Start { round, discontinuities: vec![], score: 0.0 };
+        for (sigma, planes) in sigmas.iter().zip(planes) {
+            self.find_anew(&mut start);
+            self.approach(&mut start, sigma * self.scale, planes);
+        }
+        start
+    }
+
     /// An initial pose whose visibility is computed at its own state.
     pub fn start(&self, state: State, initial: State) -> Start {
         let round = Round { seen_from: state, ..Round::from(state, initial) };

@@ -121,10 +121,5 @@ fn of_edges(frames: Vec<Frame>, scene: &Scene) -> Scene {
 
 /// The mean log likelihood of a depth discontinuity at the end of a registration from a state.
 fn score(scene: &Scene, from: &State, planes: &[Vec<Planes>]) -> f64 {
-    let mut start = scene.start(*from, *from);
-    for (sigma, planes) in SIGMAS.iter().zip(planes) {
-        scene.find_anew(&mut start);
-        scene.approach(&mut start, sigma * scene.scale, planes);
-    }
-    start.score
+    scene.registered(Round { seen_from: *from, ..Round::from(*from, *from) }, &SIGMAS, planes).score
 }

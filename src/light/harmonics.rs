@@ -253,6 +253,25 @@ mod tests {
         ])
     }
 
+    /// The constants follow from the harmonics' own factors and from the clamped cosine's share of each degree: pi, 2 pi / 3 and
+    /// pi / 4 (Ramamoorthi and Hanrahan 2001, who give six digits).
+    #[test]
+    fn the_constants_are_those_of_the_clamped_cosine() {
+        use std::f64::consts::PI;
+        let share = [PI, 2.0 * PI / 3.0, PI / 4.0];
+        let factor = |square: f64| (square / PI).sqrt();
+        let expected = [
+            share[2] * factor(15.0 / 16.0),
+            0.5 * share[1] * factor(3.0 / 4.0),
+            3.0 * share[2] * factor(5.0 / 16.0),
+            share[0] * factor(1.0 / 4.0),
+            share[2] * factor(5.0 / 16.0),
+        ];
+        for (constant, expected) in [C1, C2, C3, C4, C5].into_iter().zip(expected) {
+            assert!((constant - expected).abs() < 2e-6, "{constant} instead of {expected}");
+        }
+    }
+
     #[test]
     fn the_basis_is_the_quadratic_form_of_eq_5() {
         let normal = [0.36, -0.48, -0.8];

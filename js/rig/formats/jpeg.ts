@@ -6,7 +6,6 @@
  */
 import { BimodalError, badFile } from "../../errors.js";
 import { exifOrientation, turnedBy, turnedWords } from "./exif.js";
-import { inSrgb } from "./icc.js";
 import { checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
 
@@ -161,7 +160,7 @@ export async function readJpeg(bytes: Uint8Array): Promise<Picture> {
   if (data.length !== 3 * width * height)
     throw badFile("this JPEG is damaged: it does not have the number of pixels that it declares");
   const picture: Picture = { width, height, channels: 3, data, format: "JPEG", bits: 8, notes: [], warnings: [] };
-  return turnedBy(profile ? inSrgb(picture, profile) : picture, orientation, "EXIF says");
+  return turnedBy(profile ? (await import("./icc.js")).inSrgb(picture, profile) : picture, orientation, "EXIF says");
 }
 
 /** The size in a WebP's first part. */

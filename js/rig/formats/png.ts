@@ -1,10 +1,13 @@
 /** PNG, turned upright and converted to sRGB by its metadata. */
 import { readPng } from "../../png.js";
 import { exifOrientation, turnedBy } from "./exif.js";
-import { damagedProfile, inSrgb, pngProfile } from "./icc.js";
 import { checkSize } from "./limits.js";
 import type { Picture } from "./picture.js";
+import { once } from "../once.js";
 import { warning } from "../warnings.js";
+
+/** Most pictures have no colour profile. */
+const profiles = once(() => import("./icc.js"));
 
 /** gAMA of a linear picture and of sRGB, and the tolerance for both. */
 const LINEAR = 100_000;
@@ -27,10 +30,11 @@ function withGamma(picture: Picture, chunk: Uint8Array): Picture {
   };
 }
 
-function inColour(picture: Picture, chunks: Map<string, Uint8Array>): Picture {
+async function inColour(picture: Picture, chunks: Map<string, Uint8Array>): Promise<Picture> {
   const [profile, gamma] = [chunks.get("iCCP"), chunks.get("gAMA")];
   if (chunks.has("sRGB")) return { ...picture, transfer: "srgb", notes: ["sRGB"] };
   if (profile) {
+    const { damagedProfile, inSrgb, pngProfile } = await profiles();
     try {
       return inSrgb(picture, pngProfile(profile));
     } catch {
@@ -41,11 +45,11 @@ function inColour(picture: Picture, chunks: Map<string, Uint8Array>): Picture {
 }
 
 /** `check` refuses a size. */
-export function pngPicture(bytes: Uint8Array, check = checkSize): Picture {
+export async function pngPicture(bytes: Uint8Array, check = checkSize): Promise<Picture> {
   const { chunks, ...raster } = readPng(bytes, check);
   const picture: Picture = { ...raster, format: "PNG", notes: [], warnings: [] };
   // A grey picture may hold depths, so its colour metadata are not used.
-  const coloured = picture.channels >= 3 ? inColour(picture, chunks) : picture;
+  const coloured = picture.channels >= 3 ? await inColour(picture, chunks) : picture;
   const exif = chunks.get("eXIf");
   return exif ? turnedBy(coloured, exifOrientation(exif), "EXIF says") : coloured;
 }

@@ -75,11 +75,11 @@ function inverted(found: Picture, a: number, b: number): Picture {
   return { ...found, data, bits: 32 };
 }
 
-export function compressedDepth(format: string, bytes: Uint8Array): Picture {
+export async function compressedDepth(format: string, bytes: Uint8Array): Promise<Picture> {
   if (bytes.length <= HEAD) throw badFile("its compressed depth is cut off");
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const body = bytes.subarray(HEAD);
-  const found = kindOf(body) === "png" ? pngPicture(body) : rvl(body);
+  const found = kindOf(body) === "png" ? await pngPicture(body) : rvl(body);
   if (found.channels !== 1 || found.bits !== 16)
     throw badFile(
       `its compressed depth has ${found.channels} channels of ${found.bits} bits; one channel of 16 bits is needed`,

@@ -57,10 +57,12 @@ function formatOf(message: Message): string {
   return /jpe?g|png|webp/i.exec(format)?.[0].toLowerCase() ?? format;
 }
 
-function ofCompressed(message: Message, options: ReadOptions): Promise<Content> | Content {
+async function ofCompressed(message: Message, options: ReadOptions): Promise<Content> {
   const [format, data] = [textIn(message, "format"), bytesIn(message, "data")];
-  if (isCompressedDepth(format)) return ofPicture(compressedDepth(format, data), options);
-  return compressed(data, format).then((picture) => ofPicture(picture, options));
+  const read = isCompressedDepth(format)
+    ? compressedDepth
+    : (name: string, bytes: Uint8Array) => compressed(bytes, name);
+  return ofPicture(await read(format, data), options);
 }
 
 function ofCloud(cloud: Cloud, { turn, ...options }: ShotOptions): Content {
