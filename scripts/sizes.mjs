@@ -52,12 +52,12 @@ const EXAMPLE = /\/(?:rigs-|bimodal_stereo_rigs_bg)/;
 const WRITERS = /\/write-/;
 const REPORT = /^assets\/reportfile-/;
 /**
- * Readers that load only for files of their kind: JPEG without a browser, PNM and PFM, NumPy's arrays, colour profiles, texts, YAML, TOML, JSON with comments, calibrations of products,
+ * Readers that load only for files of their kind: JPEG without a browser, PNM and PFM, NumPy's arrays, tables as text, raw pixels, colour profiles, texts, YAML, TOML, JSON with comments, calibrations of products,
  * lenses in separate files, point clouds, EXR, TIFF, recordings, messages about unsupported files. The code that makes the Lab's pair from
  * the files of a run belongs here as well.
  */
 const OTHERS =
-  /\/(?:decoder|dist\d*|pointclouds|exr|exr-others|products|text|tiff|tiff-codecs|js-yaml|recorded|containers|lens-owners|pairs|pnm|npy(?!-matrix)|icc)-/;
+  /\/(?:decoder|dist\d*|pointclouds|exr|exr-others|products|text|tiff|tiff-codecs|js-yaml|recorded|containers|lens-owners|pairs|pnm|npy\d*(?!-matrix)|table-cells|raw-pixels|icc)-/;
 
 /** The files that run a check and read its input, all loaded on demand, and those that only the example or a saved result needs. */
 function checkFiles() {

@@ -8,14 +8,14 @@ import { BimodalError, badFile, badNamed, refused } from "../errors.js";
 import { inOrder } from "./assign.js";
 import { pictureColour, pictureMask } from "./colour.js";
 import { cloudDepth, pictureDepth } from "./depth.js";
-import { colmapText } from "./formats/colmap-others.js";
+import { colmapText } from "./formats/colmap-cameras.js";
 import { type RasterKind, rasterKind } from "./formats/headerless.js";
 import { readJpeg, readWebp } from "./formats/jpeg.js";
 import { MOST_BYTES } from "./formats/limits.js";
 import { archiveText, matrixText } from "./formats/npy-matrix.js";
 import type { Cloud, Picture, Points } from "./formats/picture.js";
 import { pngPicture } from "./formats/png.js";
-import { isRawName, pointsRefused, rawRefused, readColmapMap, readRaw, sizeInName } from "./formats/raw.js";
+import { isRawName, sizeInName } from "./formats/raw.js";
 import { textOf } from "./formats/decode.js";
 import { kindOfPicture, nameWarnings, unitOfName } from "./recognise.js";
 import { once } from "./once.js";
@@ -34,7 +34,8 @@ const exr = once(() => import("./formats/exr.js"));
 const tiff = once(() => import("./formats/tiff.js"));
 const npy = once(() => import("./formats/npy.js"));
 const pnm = once(() => import("./formats/pnm.js"));
-const tables = once(() => import("./formats/table.js"));
+const raw = once(() => import("./formats/raw-pixels.js"));
+const tables = once(() => import("./formats/table-cells.js"));
 const CLOUDS: Record<"ply" | "pcd" | "las", (bytes: Uint8Array) => Promise<Cloud | Points>> = {
   ply: async (bytes) => (await clouds()).readPly(bytes),
   pcd: async (bytes) => (await clouds()).readPcd(bytes),
@@ -55,7 +56,7 @@ const PICTURES: Record<
   pnm: async (bytes) => (await pnm()).readPnm(bytes),
   npy: async (bytes) => (await npy()).npyPicture(bytes),
   npz: async (bytes) => (await npy()).npzPicture(bytes),
-  colmap: readColmapMap,
+  colmap: async (bytes) => (await raw()).readColmapMap(bytes),
   table: async (bytes) => (await tables()).readTable(bytes),
 };
 
@@ -101,12 +102,12 @@ async function ofText(file: string, text: string, { as }: ReadOptions): Promise<
 
 /** A file without known first bytes: raw pixels of a given size, headerless points, or a text. */
 async function ofOthers({ name, bytes }: NamedFile, isPoints: boolean, options: ReadOptions): Promise<Content> {
-  const { knownContainer, knownText, pointList } = await refusals();
+  const { knownContainer, knownText, pointList, pointsRefused, rawRefused } = await refusals();
   const written = writtenOf(bytes);
   const container = written === undefined ? knownContainer(name, bytes) : undefined;
   if (container !== undefined) throw container;
   const size = options.size ?? sizeInName(name, bytes);
-  if (size !== undefined && isRawName(name)) return ofPicture(name, readRaw(bytes, size), options);
+  if (size !== undefined && isRawName(name)) return ofPicture(name, (await raw()).readRaw(bytes, size), options);
   if (written !== undefined) return ofText(name, written, options);
   const text = textOf(bytes);
   const scan = isPoints || (text === undefined && /\.bin$/i.test(name)) ? (await clouds()).readBin(bytes) : undefined;

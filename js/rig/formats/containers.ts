@@ -1,5 +1,6 @@
 /** Files that are not read: their formats, by first bytes or names, and a remedy for each. */
 import { type BimodalError, badFile } from "../../errors.js";
+import { SIZES } from "./grid.js";
 
 export { pointList } from "./point-list.js";
 
@@ -123,4 +124,22 @@ export function knownText(text: string): BimodalError | undefined {
   const head = text.slice(0, 8192);
   const row = TEXTS.find(([pattern]) => pattern.test(head));
   return row && refused(row);
+}
+
+/** The error about such points if they are not a scan. */
+export const pointsRefused = () =>
+  badFile(
+    "it looks like a LiDAR's points without rows and columns (unorganised, such as a velodyne .bin of KITTI or nuScenes). They are too few or too scattered for a range image; save them as an organised cloud or as a depth map",
+  );
+
+/** The error about a file of an unknown format, with the sizes that would fit if it holds raw pixels. */
+export function rawRefused(bytes: Uint8Array) {
+  const fitting = ([2, 4] as const).flatMap((each) =>
+    SIZES.filter(([width, height]) => width * height * each === bytes.length).map(
+      ([width, height]) => `${width}x${height} of ${8 * each} bits`,
+    ),
+  );
+  return badFile(
+    `its format is not supported; if it is raw data without a header, give its size in pixels (width and height)${fitting.length > 0 ? `: ${fitting.join(" or ")} would have its ${bytes.length} bytes` : ""}, or save it as 16-bit PNG or .npy`,
+  );
 }

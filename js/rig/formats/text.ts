@@ -3,7 +3,7 @@ import { BimodalError, badFile } from "../../errors.js";
 import { once } from "../once.js";
 import { asFisheye } from "./cameras.js";
 import { readColmap, isColmap } from "./colmap.js";
-import { isColmapImages, readColmapImages } from "./colmap-others.js";
+import { isColmapImages, readColmapImages } from "./colmap-images.js";
 import { readColumns } from "./columns.js";
 import { withPoints } from "./commas.js";
 import { withEnds } from "./filename.js";

@@ -19,7 +19,7 @@ const RECONSTRUCTIONS: readonly Row[] = [
   {
     product: "COLMAP",
     file: "`cameras.bin`",
-    modules: ["colmap-others"],
+    modules: ["colmap-cameras"],
     reader: "COLMAP's cameras",
     sample: "colmap-cameras-bin",
     reads: "cameras",
@@ -31,7 +31,7 @@ const RECONSTRUCTIONS: readonly Row[] = [
   {
     product: "COLMAP",
     file: "`images.txt`",
-    modules: ["colmap-others"],
+    modules: ["colmap-images"],
     reader: "COLMAP's images",
     sample: "colmap-images",
     reads: "poses",

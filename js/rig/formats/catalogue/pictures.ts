@@ -129,7 +129,7 @@ export const DEPTHS: readonly Row[] = [
   {
     product: "MATLAB, spreadsheets, NumPy",
     file: "a table of numbers, row by row (`.csv`, `.txt`)",
-    modules: ["table"],
+    modules: ["table-cells"],
     reader: "table",
     sample: "depth-table",
     reads: "depth",
@@ -141,7 +141,7 @@ export const DEPTHS: readonly Row[] = [
   {
     product: "RealSense Viewer, cameras' own programs",
     file: "`.raw`, `.bin` without a header",
-    modules: ["raw"],
+    modules: ["raw-pixels"],
     reader: "raw",
     sample: "depth-raw",
     reads: "depth",
@@ -153,7 +153,7 @@ export const DEPTHS: readonly Row[] = [
   {
     product: "COLMAP",
     file: "`stereo/depth_maps/*.bin`",
-    modules: ["raw"],
+    modules: ["raw-pixels"],
     reader: "colmap",
     sample: "depth-colmap",
     reads: "depth",
