@@ -180,3 +180,66 @@ test("slides turn by keys, leave the sliders theirs, and end by escape", async (
   await expect(page).not.toHaveURL(/slides/);
   expect(lab.complaints).toEqual([]);
 });
+
+test("Home and End lead to the first and the last slide of the choice, and B blanks the screen", async ({
+  lab,
+  page,
+}) => {
+  await open(page, "at=grey&slides=lambert,grey,pose");
+  const at = (id: string) => page.locator(`.learn-slide [data-lesson="${id}"]`);
+  await page.keyboard.press("End");
+  await expect(at("pose")).toBeVisible();
+  await page.keyboard.press("Home");
+  await expect(at("lambert")).toBeVisible();
+  const cover = () =>
+    page.locator("dialog.learn-slides").evaluate((each) => {
+      const { content, backgroundColor, position } = getComputedStyle(each, "::after");
+      return content === "none" ? "none" : `${position} ${backgroundColor}`;
+    });
+  expect(await cover()).toBe("none");
+  await page.keyboard.press("b");
+  expect(await cover()).toBe("fixed rgb(0, 0, 0)");
+  await page.keyboard.press("b");
+  expect(await cover()).toBe("none");
+  await page.keyboard.press("b");
+  await page.keyboard.press("ArrowRight");
+  await expect(at("grey")).toBeVisible();
+  expect(await cover()).toBe("none");
+  expect(lab.complaints).toEqual([]);
+});
+
+test("two buttons tick all slides or only the present one", async ({ lab, page, say }) => {
+  await open(page, "at=grey&slides");
+  await page.locator(".learn-count").click();
+  const overview = page.locator(".learn-overview");
+  await overview.getByRole("button", { name: say("interface.overview.none", "None"), exact: true }).click();
+  await expect(page.locator(".learn-count")).toHaveText(/^1 \/ 1/);
+  await expect(page).toHaveURL(/&slides=grey$/);
+  await overview.getByRole("button", { name: say("interface.overview.all", "All"), exact: true }).click();
+  await expect(page.locator(".learn-count")).toHaveText(/^7 \/ 15/);
+  await expect(page).toHaveURL(/&slides$/);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("a number is typed as soon as its question appears, and keys still turn an unanswered slide", async ({
+  lab,
+  page,
+}) => {
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await open(page, "at=grey&slides");
+  await page.keyboard.press("q");
+  const form = page.locator(".learn-slide .learn-guess[data-asked]");
+  await expect(form.locator("input[type=number]")).toBeFocused();
+  await page.keyboard.type("3");
+  await page.keyboard.press("Enter");
+  await expect(form.locator(".learn-answer")).not.toBeEmpty();
+  await page.keyboard.press("ArrowRight");
+  await expect(page.locator('.learn-slide [data-lesson="colours"]')).toBeVisible();
+  await page.keyboard.press("ArrowLeft");
+  await expect(page.locator('.learn-slide [data-lesson="grey"]')).toBeVisible();
+  await page.keyboard.press("q");
+  await expect(form.locator("input[type=number]")).toBeFocused();
+  await page.keyboard.press("ArrowRight");
+  await expect(page.locator('.learn-slide [data-lesson="colours"]')).toBeVisible();
+  expect(lab.complaints).toEqual([]);
+});

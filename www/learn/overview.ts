@@ -24,7 +24,11 @@ export class Overview {
     const copy = make("button", { type: "button" }, phrase("overview.copy", "Copy the link"));
     copy.addEventListener("click", () => void copyAddress(copy));
     const use = phrase("overview.use", "Ticked slides are shown. The link holds the choice.");
-    this.element.append(this.#list, make("p", { class: "soft" }, use), copy);
+    const every = make("button", { type: "button" }, phrase("overview.all", "All"));
+    every.addEventListener("click", () => this.#tick(true));
+    const none = make("button", { type: "button" }, phrase("overview.none", "None"));
+    none.addEventListener("click", () => this.#tick(false));
+    this.element.append(this.#list, make("p", { class: "soft" }, use), every, " ", none, " ", copy);
   }
 
   show(chosen: Chosen, at: LessonId): void {
@@ -57,6 +61,16 @@ export class Overview {
       this.#hooks.jump(id);
     });
     return make("li", {}, box, jump);
+  }
+
+  /** Ticks all slides or none but the present one, which is always shown. */
+  #tick(isShown: boolean): void {
+    for (const box of this.#list.querySelectorAll("input")) {
+      box.checked = isShown || box.disabled;
+      const jump = box.parentElement?.querySelector("button");
+      if (jump) jump.disabled = !box.checked;
+    }
+    this.#hooks.choose(this.#ticked());
   }
 
   #ticked(): Chosen {

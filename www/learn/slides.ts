@@ -9,8 +9,8 @@ import type { LessonId } from "./protocol";
 
 /** Elements that use the arrow keys themselves. */
 const MOVED_BY_ARROWS = "input:not([type=checkbox]), select, textarea";
-/** Elements in which letters are typed or choose an option. */
-const TAKES_LETTERS = "input[type=number], select";
+/** Elements in which letters choose an option. A field for a number takes no letter that is a command. */
+const TAKES_LETTERS = "select";
 /** Elements that keep the focus after a press of the pointer and would then take the arrow keys. */
 const KEEPS_FOCUS = "input:is([type=range], [type=radio]), label";
 
@@ -45,6 +45,7 @@ export class Slides {
   readonly #answers: Answers;
   #slide: Slide | undefined;
   #asked: number | undefined;
+  #chosen: Chosen = [];
 
   constructor(answers: Answers, hooks: SlidesHooks) {
     this.#answers = answers;
@@ -68,7 +69,9 @@ export class Slides {
     });
     // After a typed guess the keys are commands again.
     this.element.addEventListener("submit", () => this.#focus());
+    this.element.addEventListener("click", () => this.#blank(false));
     this.element.addEventListener("close", () => {
+      this.#blank(false);
       if (document.fullscreenElement) void document.exitFullscreen();
       hooks.close();
     });
@@ -115,6 +118,7 @@ export class Slides {
   count(chosen: Chosen): void {
     const { id } = this.#slide ?? {};
     if (!id) return;
+    this.#chosen = chosen;
     const at = chosen.indexOf(id);
     for (const { by, button } of this.#turns) button.disabled = chosen[at + by] === undefined;
     this.#overview.show(chosen, id);
@@ -132,7 +136,9 @@ export class Slides {
   #ask(): void {
     const next = (this.#asked ?? -1) + 1;
     this.#put(next < (this.#slide?.questions ?? 0) ? next : undefined);
-    this.#focus();
+    const field = this.#holder.querySelector<HTMLInputElement>(".learn-guess[data-asked] input[type=number]");
+    if (field) field.focus({ preventScroll: true });
+    else this.#focus();
   }
 
   #put(index: number | undefined): void {
@@ -156,18 +162,38 @@ export class Slides {
     else document.documentElement.requestFullscreen().catch(() => {});
   }
 
+  /** Covers the slide, so that the class looks at the lecturer. */
+  #blank(isBlank: boolean): void {
+    this.element.toggleAttribute("data-blank", isBlank);
+  }
+
   #key(event: KeyboardEvent): void {
     if (event.altKey || event.ctrlKey || event.metaKey) return;
+    const wasBlank = this.element.hasAttribute("data-blank");
+    this.#blank(false);
     const within = (selector: string) => event.target instanceof Element && event.target.closest(selector) !== null;
-    if (!event.repeat && !within(TAKES_LETTERS)) {
-      if (event.key === "f") return this.#fill();
-      if (event.key === "q") return this.#ask();
-      if (event.key === "a") return this.#answer();
-    }
+    if (!within(TAKES_LETTERS) && this.#command(event, wasBlank)) return event.preventDefault();
+    const isEmpty =
+      event.target instanceof HTMLInputElement && event.target.matches("[type=number]") && !event.target.value;
+    if (/^(Arrow|Home|End)/.test(event.key) && within(MOVED_BY_ARROWS) && !isEmpty) return;
+    const end = { Home: this.#chosen[0], End: this.#chosen.at(-1) }[event.key];
     const by = { ArrowRight: 1, PageDown: 1, ArrowLeft: -1, PageUp: -1 }[event.key] as 1 | -1 | undefined;
-    if (by === undefined) return;
-    if (event.key.startsWith("Arrow") && within(MOVED_BY_ARROWS)) return;
+    if (end === undefined && by === undefined) return;
     event.preventDefault();
-    this.#hooks.turn(by);
+    if (by !== undefined) this.#hooks.turn(by);
+    else if (end !== undefined && end !== this.#slide?.id) this.#hooks.jump(end);
+  }
+
+  /** Whether the key is a command's letter. */
+  #command({ key, repeat }: KeyboardEvent, wasBlank: boolean): boolean {
+    const commands: Record<string, () => void> = {
+      f: () => this.#fill(),
+      q: () => this.#ask(),
+      a: () => this.#answer(),
+      b: () => this.#blank(!wasBlank),
+    };
+    const run = commands[key];
+    if (!repeat) run?.();
+    return run !== undefined;
   }
 }
