@@ -226,7 +226,8 @@ fn rescaled(camera: &Pinhole, size: Size, told: [f64; 2], scale: f64) -> Option<
     let is_valid = scale.is_finite() && scale > 0.0;
     let centre = |k: usize, own: f64| scale * (own + 0.5) + 0.5 * (sides[k] - scale * told[k]) - 0.5;
     let [cx, cy] = [centre(0, camera.cx), centre(1, camera.cy)];
-    (is_valid && !is_own).then(|| Pinhole { fx: scale * camera.fx, fy: scale * camera.fy, cx, cy, lens: camera.lens })
+    let scaled = Pinhole { fx: scale * camera.fx, fy: scale * camera.fy, cx, cy, lens: camera.lens };
+    (is_valid && !is_own).then_some(scaled)
 }
 
 #[cfg(test)]
