@@ -161,8 +161,10 @@ impl CalibrationCheck {
             Stage::Rereading { search, .. } => {
                 (0.86 + 0.01 * search.progress(), "trying other conventions of the candidate")
             }
-            Stage::Reviewing { search, .. } => {
-                (0.87 + 0.01 * search.progress(), "trying other conventions of the image and the depth map")
+            Stage::Reviewing { search, optima, .. } => {
+                // Those that the input suggests come before the conventions of the candidate, the others after them.
+                let from = if optima.is_some() { 0.85 } else { 0.87 };
+                (from + 0.01 * search.progress(), "trying other conventions of the image and the depth map")
             }
             Stage::Curves { done, .. } => {
                 (0.88 + 0.12 * *done as f64 / self.scene.cues.len() as f64, "measuring sensitivity")
