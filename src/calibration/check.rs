@@ -7,7 +7,7 @@
 
 use super::cue::Cue;
 use super::distortion;
-use super::input::RigView;
+use super::input::{RigView, rigid};
 use super::next::next;
 use super::optima::{self, Optimum, SAME_START};
 use super::planes::Planes;
@@ -33,9 +33,6 @@ const MOST_CANDIDATES: usize = 16;
 const FINDING_ANEW: [usize; 2] = [1, 3];
 /// The level at which candidates enter once more, with windows of a few pixels.
 const ENTERING: usize = 2;
-
-/// Largest deviation of an entry of a rotation from the nearest rotation; matrices of trackers drift by 1e-3.
-const ROTATION_TOLERANCE: f64 = 0.01;
 
 /// The initial pose of the search: the first candidate that puts points onto the image.
 fn initial(scene: &Scene, candidates: &[(String, State)]) -> State {
@@ -312,13 +309,20 @@ impl CalibrationCheck {
         let report = self.conclude(&optima, &planes);
         let passes = report.candidates.first().is_none_or(|first| first.verdict == CheckVerdict::Consistent);
         self.report = Some(report);
-        match self.candidates.first() {
-            Some((_, candidate)) if !passes => {
-                let search = Box::new(Reviewing::new(&Reading::SUGGESTED, &self.scene, candidate, &self.best));
-                Stage::Reviewing { search, planes, optima: Some(optima) }
-            }
-            _ => curves_of(optima, planes),
+        if passes {
+            return curves_of(optima, planes);
         }
+        match self.review(&Reading::SUGGESTED) {
+            Some(search) => Stage::Reviewing { search, planes, optima: Some(optima) },
+            None => self.reread(optima, planes),
+        }
+    }
+
+    /// The search over readings of the views for the first candidate. Behind a guessed camera another reading could fit by
+    /// chance, so there is none.
+    fn review(&self, readings: &'static [Reading]) -> Option<Box<Reviewing>> {
+        let (_, candidate) = self.candidates.first().filter(|_| !self.scene.focal_is_free)?;
+        Some(Box::new(Reviewing::new(readings, &self.scene, candidate, &self.best)))
     }
 
     /// Tries other conventions of the first candidate, unless one is named already.
@@ -347,11 +351,8 @@ impl CalibrationCheck {
             }
         }
         self.lens = lens;
-        match self.candidates.first() {
-            Some((_, candidate)) => {
-                let search = Box::new(Reviewing::new(&Reading::VIEWS, &self.scene, candidate, &self.best));
-                Stage::Reviewing { search, planes, optima: None }
-            }
+        match self.review(&Reading::VIEWS) {
+            Some(search) => Stage::Reviewing { search, planes, optima: None },
             None => self.keep_report(planes),
         }
     }
@@ -416,22 +417,6 @@ fn names_reading(report: &CheckReport) -> bool {
 
 fn curves_of(mut optima: Vec<Optimum>, planes: Vec<Planes>) -> Stage {
     Stage::Curves { planes, findings: Box::new(optima.swap_remove(0).findings), done: 0 }
-}
-
-/// The pose with the rotation nearest to the given matrix.
-pub(super) fn rigid(pose: &Similarity) -> Result<State> {
-    let wrong = |member, message: &str| Error::new(ErrorKind::Range, member, message.to_owned());
-    if (pose.scale - 1.0).abs() > ROTATION_TOLERANCE {
-        return Err(wrong("scale", "must be 1: extrinsics do not change sizes").value(pose.scale));
-    }
-    // The comparison is written so that it rejects NaN.
-    if !pose.translation.iter().all(|value| value.abs() < crate::view::FARTHEST) {
-        return Err(wrong("translation", "must be finite, and below 1e12 m"));
-    }
-    let nearest = Similarity::nearest(&pose.rotation, pose.translation).ok();
-    let nearest = nearest.filter(|nearest| (nearest.rotation - pose.rotation).abs().max() < ROTATION_TOLERANCE);
-    let Some(nearest) = nearest else { return Err(wrong("rotation", "must be orthonormal with determinant one")) };
-    Ok(State::at(Similarity { scale: 1.0, ..nearest }))
 }
 
 /// Warns of translations that are probably in millimetres.

@@ -60,8 +60,8 @@ impl CalibrationCheck {
         }
     }
 
-    /// The report if another reading of the views explains why the first candidate does not pass; `None` if the candidate
-    /// is off in that reading too. `as_given` is the report on the candidate in the views as they were given.
+    /// The report if another reading of the views explains why the first candidate does not pass; `None` unless its error in
+    /// that reading may lie within the tolerance. `as_given` is the report on the candidate in the views as they were given.
     pub(super) fn conclude_in(
         &self,
         reading: Reading,
@@ -71,7 +71,9 @@ impl CalibrationCheck {
     ) -> Option<CheckReport> {
         let mut report = self.conclude(std::slice::from_ref(optimum), planes);
         let tolerance = self.judge_of(&[optimum]).0.tolerance();
-        let first = report.candidates.first_mut().filter(|first| first.verdict != CheckVerdict::Off)?;
+        let may_pass =
+            |first: &&mut CandidateReport| first.verdict != CheckVerdict::Off && first.health.interval[0] <= tolerance;
+        let first = report.candidates.first_mut().filter(may_pass)?;
         let reason = CheckReason::Misread { reading, margin: Margin { health: first.health, tolerance } };
         *first = CandidateReport { verdict: CheckVerdict::Off, reason: reason.clone(), ..as_given.clone() };
         (report.verdict, report.reason) = (CheckVerdict::Off, reason);

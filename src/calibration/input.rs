@@ -5,8 +5,10 @@ use super::frame::Frame;
 use super::planes::Planes;
 use super::reason::{Warning, WarningKind};
 use super::sampling::{Gathered, gathered};
+use super::unknowns::State;
 use crate::check::positive;
 use crate::error::{Error, ErrorKind, Result};
+use crate::pose::Similarity;
 use crate::view::{ColourSamples, DepthSamples, Lens, Pinhole, Size, Transfer, to_srgb, transfer_of};
 
 /// Largest side of an image that is used at full size, pixels. Larger images are halved, because a depth map does not
@@ -32,6 +34,9 @@ const BLANK: f32 = 0.02;
 const FEWEST_DEPTHS: usize = 200;
 /// Focal length divided by the longer side of the image if no intrinsics are given, a field of view of 62 degrees.
 const USUAL_FOCAL: f64 = 0.83;
+
+/// Largest deviation of an entry of a rotation from the nearest rotation; matrices of trackers drift by 1e-3.
+const ROTATION_TOLERANCE: f64 = 0.01;
 
 /// One pair of frames, not yet validated.
 #[derive(Clone, Debug)]
@@ -284,6 +289,22 @@ fn doubts(view: &RigView, grid: Size, points: &[[f32; 3]]) -> Vec<WarningKind> {
         doubts.push(WarningKind::RoughDepth);
     }
     doubts
+}
+
+/// The pose with the rotation nearest to the given matrix.
+pub(super) fn rigid(pose: &Similarity) -> Result<State> {
+    let wrong = |member, message: &str| Error::new(ErrorKind::Range, member, message.to_owned());
+    if (pose.scale - 1.0).abs() > ROTATION_TOLERANCE {
+        return Err(wrong("scale", "must be 1: extrinsics do not change sizes").value(pose.scale));
+    }
+    // The comparison is written so that it rejects NaN.
+    if !pose.translation.iter().all(|value| value.abs() < crate::view::FARTHEST) {
+        return Err(wrong("translation", "must be finite, and below 1e12 m"));
+    }
+    let nearest = Similarity::nearest(&pose.rotation, pose.translation).ok();
+    let nearest = nearest.filter(|nearest| (nearest.rotation - pose.rotation).abs().max() < ROTATION_TOLERANCE);
+    let Some(nearest) = nearest else { return Err(wrong("rotation", "must be orthonormal with determinant one")) };
+    Ok(State::at(Similarity { scale: 1.0, ..nearest }))
 }
 
 #[cfg(test)]

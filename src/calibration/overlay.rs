@@ -1,9 +1,9 @@
 //! A frame with the points and depth edges of a pose over its image.
 
-use super::check::rigid;
 use super::discontinuities;
 use super::frame::Projection;
 use super::input::RigView;
+use super::input::rigid;
 use crate::error::Result;
 use crate::pose::Similarity;
 
