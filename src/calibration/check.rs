@@ -319,7 +319,7 @@ impl CalibrationCheck {
     }
 
     /// The search over readings of the views for the first candidate. Behind a guessed camera another reading could fit by
-    /// chance, so there is none.
+    /// chance, so none is tried.
     fn review(&self, readings: &'static [Reading]) -> Option<Box<Reviewing>> {
         let (_, candidate) = self.candidates.first().filter(|_| !self.scene.focal_is_free)?;
         Some(Box::new(Reviewing::new(readings, &self.scene, candidate, &self.best)))

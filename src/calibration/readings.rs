@@ -282,7 +282,7 @@ mod tests {
         assert_eq!(OPTICAL_OF_BODY * Vector3::y(), -Vector3::x());
         assert_eq!(OPTICAL_OF_BODY * Vector3::z(), -Vector3::y());
         assert!((about_axis(90.0).apply(Vector3::x()) - Vector3::y()).norm() < 1e-12);
-        // Registered needs no mistake, and angles in degrees have a test of their own.
+        // Registered needs no mistake, and angles in degrees have a separate test.
         assert_eq!(mistakes.len() + 2, Reading::POSES.len());
     }
 
