@@ -318,10 +318,11 @@ impl CalibrationCheck {
         }
     }
 
-    /// The search over readings of the views for the first candidate. Behind a guessed camera another reading could fit by
-    /// chance, so none is tried.
+    /// The search over readings of the views for the first candidate. They are compared by edges, so none is tried without
+    /// this cue. Behind a guessed camera another reading could fit by chance.
     fn review(&self, readings: &'static [Reading]) -> Option<Box<Reviewing>> {
-        let (_, candidate) = self.candidates.first().filter(|_| !self.scene.focal_is_free)?;
+        let is_open = !self.scene.focal_is_free && self.scene.cues.contains(&Cue::Edges);
+        let (_, candidate) = self.candidates.first().filter(|_| is_open)?;
         Some(Box::new(Reviewing::new(readings, &self.scene, candidate, &self.best)))
     }
 
