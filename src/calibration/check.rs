@@ -318,10 +318,12 @@ impl CalibrationCheck {
         }
     }
 
-    /// The search over readings of the views for the first candidate. They are compared by edges, so none is tried without
+    /// The search over readings of the views for the first candidate, if any applies. They are compared by edges, so none is tried without
     /// this cue. Behind a guessed camera another reading could fit by chance.
     fn review(&self, readings: &'static [Reading]) -> Option<Box<Reviewing>> {
-        let is_open = !self.scene.focal_is_free && self.scene.cues.contains(&Cue::Edges);
+        let applies = |reading: &Reading| reading.frame(&self.scene.frames[0]).is_some();
+        let is_open =
+            !self.scene.focal_is_free && self.scene.cues.contains(&Cue::Edges) && readings.iter().any(applies);
         let (_, candidate) = self.candidates.first().filter(|_| is_open)?;
         Some(Box::new(Reviewing::new(readings, &self.scene, candidate, &self.best)))
     }
@@ -370,6 +372,7 @@ impl CalibrationCheck {
         }
     }
 
+    /// Adopts the frames in another reading and the report on them, or leaves both as they are.
     fn conclude_views(&mut self, refining: Refining) -> Option<Stage> {
         let Refining { reading, scene, round, planes: read, .. } = refining;
         let (lens, scene) = (self.lens, std::mem::replace(&mut self.scene, scene));

@@ -17,7 +17,7 @@ const SIGMAS: [f64; 3] = [5.0, 2.5, 1.3];
 /// Smallest gain in the mean log likelihood of a depth discontinuity for which a lens is reported: six times
 /// `SCORE_PRIOR`, the value of one sigma of the prior. A silhouette that fits badly fits some lens better, so small
 /// objects without distortion may exceed it as well (docs/lab/thresholds.md).
-const GAIN: f64 = 0.06;
+pub(super) const GAIN: f64 = 0.06;
 
 /// The term k1 that fits the edges clearly better than a camera without distortion.
 pub(super) fn left_out(scene: &mut Scene, round: &Round) -> Option<f64> {

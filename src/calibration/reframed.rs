@@ -197,34 +197,34 @@ fn on_ray(camera: &Pinhole, (column, row): (usize, usize), z: f32) -> [f32; 3] {
 
 /// The size of the image to which intrinsics belong: that of a common stream, or else the one in whose middle the principal
 /// point lies.
-fn told_size(camera: &Pinhole) -> [f64; 2] {
-    let told = [2.0 * camera.cx + 1.0, 2.0 * camera.cy + 1.0];
-    let off = |size: &[f64; 2]| (0..2).map(|k| (told[k] / size[k] - 1.0).abs()).fold(0.0, f64::max);
+fn stated_size(camera: &Pinhole) -> [f64; 2] {
+    let stated = [2.0 * camera.cx + 1.0, 2.0 * camera.cy + 1.0];
+    let off = |size: &[f64; 2]| (0..2).map(|k| (stated[k] / size[k] - 1.0).abs()).fold(0.0, f64::max);
     let nearest = STREAMS.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
-    nearest.copied().filter(|size| off(size) <= OFF_MIDDLE).unwrap_or(told)
+    nearest.copied().filter(|size| off(size) <= OFF_MIDDLE).unwrap_or(stated)
 }
 
 /// The intrinsics of an image of this size if they are those of another one with the same angle of view along x.
 fn resized(camera: &Pinhole, size: Size) -> Option<Pinhole> {
-    let told = told_size(camera);
-    rescaled(camera, size, told, size.width as f64 / told[0])
+    let stated = stated_size(camera);
+    rescaled(camera, size, stated, size.width as f64 / stated[0])
 }
 
 /// The same with the same angle of view along y, if the images differ in shape.
 fn cropped(camera: &Pinhole, size: Size) -> Option<Pinhole> {
-    let told = told_size(camera);
-    let [by_width, by_height] = [size.width as f64 / told[0], size.height as f64 / told[1]];
+    let stated = stated_size(camera);
+    let [by_width, by_height] = [size.width as f64 / stated[0], size.height as f64 / stated[1]];
     let differs = (by_width / by_height - 1.0).abs() > OFF_MIDDLE;
-    differs.then(|| rescaled(camera, size, told, by_height)).flatten()
+    differs.then(|| rescaled(camera, size, stated, by_height)).flatten()
 }
 
-/// Intrinsics of an image of the size `told`, for one that is scaled and has its sides cut or added evenly; `None` for
+/// Intrinsics of an image of the size `stated`, for one that is scaled and has its sides cut or added evenly; `None` for
 /// intrinsics of the image itself.
-fn rescaled(camera: &Pinhole, size: Size, told: [f64; 2], scale: f64) -> Option<Pinhole> {
+fn rescaled(camera: &Pinhole, size: Size, stated: [f64; 2], scale: f64) -> Option<Pinhole> {
     let sides = [size.width as f64, size.height as f64];
     let is_own = (0..2).all(|k| ([camera.cx, camera.cy][k] - 0.5 * (sides[k] - 1.0)).abs() <= OFF_MIDDLE * sides[k]);
     let is_valid = scale.is_finite() && scale > 0.0;
-    let centre = |k: usize, own: f64| scale * (own + 0.5) + 0.5 * (sides[k] - scale * told[k]) - 0.5;
+    let centre = |k: usize, own: f64| scale * (own + 0.5) + 0.5 * (sides[k] - scale * stated[k]) - 0.5;
     let [cx, cy] = [centre(0, camera.cx), centre(1, camera.cy)];
     let scaled = Pinhole { fx: scale * camera.fx, fy: scale * camera.fy, cx, cy, lens: camera.lens };
     (is_valid && !is_own).then_some(scaled)

@@ -6,6 +6,7 @@
 //! Its frames then replace those of the check, and the candidate is refined in them with all cues.
 
 use super::cue::Cue;
+use super::distortion::GAIN;
 use super::frame::Frame;
 use super::planes::Planes;
 use super::readings::Reading;
@@ -14,9 +15,6 @@ use super::unknowns::State;
 
 /// Maximum number of frames in which readings are compared. All frames of a rig are stored alike.
 const MOST_FRAMES: usize = 2;
-/// Least gain in the mean log likelihood of a depth discontinuity at which a reading is taken, as for a lens that was
-/// left out (`distortion`).
-const GAIN: f64 = 0.06;
 
 /// The readings under way.
 pub(super) struct Reviewing {
