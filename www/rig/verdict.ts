@@ -91,8 +91,7 @@ export function advise(run: Run): string[] {
   const isOpen = report.verdict === "undecided" && Object.values(report.candidates)[0]?.verdict === "undecided";
   const confirm = guessed.length > 0 ? [`Confirm the guess in step 1: ${guessed.join("; ")}.`] : [];
   if (!isOpen) list.push(...confirm);
-  if (!estimateOnly && report.code === "misread")
-    list.push("Convert the file as the verdict says, and check again.");
+  if (!estimateOnly && report.code === "misread") list.push("Convert the file as the verdict says, and check again.");
   else if (!estimateOnly && report.verdict === "off")
     list.push("Save the calibration found here, use it instead of yours, and check it with new frames.");
   if (!isUsable(run))
