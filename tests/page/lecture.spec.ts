@@ -102,6 +102,32 @@ test("a question on a slide takes the arrow keys only from those who tab to it",
   expect(lab.complaints).toEqual([]);
 });
 
+test("a guess that is compared before its question is drawn gets its answer", async ({ lab, page }) => {
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await open(page, "at=relief&slides");
+  // The state that reveals the answer is the one in which the slide opens, so its drawing is known and shown at once.
+  await dialog(page).evaluate((slides) => {
+    slides.dispatchEvent(new KeyboardEvent("keydown", { key: "q" }));
+    const form = slides.querySelector<HTMLFormElement>(".learn-guess[data-asked]");
+    form?.querySelector("input")?.click();
+    form?.requestSubmit();
+  });
+  await expect(asked(page).locator(".learn-answer")).not.toBeEmpty();
+  expect(lab.complaints).toEqual([]);
+});
+
+test("a link followed while the slides close opens its lesson", async ({ lab, page }) => {
+  await open(page, "at=grey&slides");
+  await dialog(page).evaluate((slides: HTMLDialogElement) => {
+    slides.close();
+    location.hash = "#learn&at=colours&noise=0.1";
+  });
+  await expect(page.locator('[data-lesson="colours"].learn-lesson')).toBeVisible();
+  await expect(control(page, "noise")).toHaveValue("0.1");
+  await expect(page).toHaveURL(/at=colours/);
+  expect(lab.complaints).toEqual([]);
+});
+
 test("a link hides every answer until a button or a key shows it", async ({ lab, page, say }) => {
   await page.emulateMedia({ reducedMotion: "reduce" });
   await page.goto("./#learn&at=exercises&answers=hidden");

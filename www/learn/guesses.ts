@@ -11,8 +11,8 @@ import type { Drawing, Values } from "./protocol";
 interface Hooks {
   /** Sets the state that a question is about. */
   set(values: Values): void;
-  /** Reveals the answer; `done` is called once the figure is on its way to the last state. */
-  reveal(what: Try, done: () => void): void;
+  /** Reveals the answer; `last` is called just before the figure goes to its last state, whose drawing may be known. */
+  reveal(what: Try, last: () => void): void;
   /** Whether answers are hidden at present. */
   areHidden(): boolean;
 }

@@ -10,6 +10,7 @@ import "../style/learn-slides.css";
 import { make } from "../dom";
 import { saveJson } from "../save";
 import { phrase } from "../words";
+import { Address } from "./address";
 import { Ahead } from "./ahead";
 import { Answers } from "./answers";
 import { type Chosen, chosenBy, slidesInAddress } from "./chosen";
@@ -72,6 +73,7 @@ export class LearnPage {
     phrase("exercises", "Exercises"),
   );
   readonly #slides: Slides;
+  readonly #address = new Address();
   #chosen: Chosen = chosenBy("");
   #shown: Shown | undefined;
   #isOpen = false;
@@ -116,6 +118,7 @@ export class LearnPage {
    */
   open(hash: string): void {
     this.#isOpen = true;
+    this.#address.read();
     const asked = new URLSearchParams(hash.replace(/^#/, ""));
     this.#isEmbedded = asked.has("embed");
     if (asked.get("answers") === "hidden") this.#answers.hide();
@@ -206,7 +209,7 @@ export class LearnPage {
 
   #writeExercises(): void {
     const state = new URLSearchParams({ at: "exercises", ...this.#answers.inAddress, ...languageInAddress() });
-    history.replaceState(null, "", `#learn&${state}`);
+    this.#address.write(`#learn&${state}`);
   }
 
   #toggleAnswers(): void {
@@ -250,9 +253,9 @@ export class LearnPage {
     const guesses = new Guesses(lesson, {
       set: (at) => controls.set(at),
       areHidden: () => this.#answers.areHidden,
-      reveal: (what, done) => {
+      reveal: (what, last) => {
         showFigure(box);
-        player.play(what, done);
+        player.play(what, last);
       },
     });
     const tries = tryList(lesson, (what, task) => {
@@ -396,8 +399,7 @@ export class LearnPage {
     for (const [key, value] of Object.entries(this.#answers.inAddress)) state.append(key, value);
     const slides = this.#slides.isOpen ? slidesInAddress(this.#chosen) : "";
     const address = `#learn&${state}${slides}${this.#isEmbedded ? "&embed" : ""}`;
-    if (entry === "same") history.replaceState(null, "", address);
-    else history.pushState(null, "", address);
+    this.#address.write(address, entry);
   }
 
   #point(id: LessonId): void {

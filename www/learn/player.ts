@@ -23,27 +23,26 @@ export class Player {
     return this.#timer !== 0;
   }
 
-  /** Visitors who prefer no motion see its end at once. */
-  play({ set = {}, sweep }: Try, done: () => void = () => {}): void {
+  /** Calls `last` just before the controls take their last state. Visitors who prefer no motion see that state at once. */
+  play({ set = {}, sweep }: Try, last: () => void = () => {}): void {
     this.stop();
-    const isSlow = sweep && !matchMedia("(prefers-reduced-motion: reduce)").matches;
-    const end = sweep ? { [sweep.key]: sweep.to } : {};
-    if (!sweep || !isSlow) {
-      this.#controls.set({ ...set, ...end });
-      return done();
+    const slider = this.#lesson.controls.find(({ key }) => key === sweep?.key);
+    if (!sweep || slider?.kind !== "slider" || matchMedia("(prefers-reduced-motion: reduce)").matches) {
+      last();
+      return this.#controls.set({ ...set, ...(sweep ? { [sweep.key]: sweep.to } : {}) });
     }
     this.#controls.set(set);
-    const slider = this.#lesson.controls.find(({ key }) => key === sweep.key);
-    if (slider?.kind !== "slider") return done();
     const from = Number(this.#controls.values[sweep.key]);
     let step = 0;
     this.#timer = window.setInterval(() => {
       step++;
       const value = from + (step / STEPS) * (sweep.to - from);
       const whole = step === STEPS ? sweep.to : Math.round(value / slider.step) * slider.step;
-      if (step === STEPS) this.stop();
+      if (step === STEPS) {
+        this.stop();
+        last();
+      }
       this.#controls.set({ [sweep.key]: Number(whole.toFixed(6)) });
-      if (step === STEPS) done();
     }, EVERY);
   }
 
