@@ -100,7 +100,7 @@ impl Round {
 }
 
 /// The depth discontinuities and the samples that are visible from a state.
-struct Seen {
+pub(super) struct Seen {
     discontinuities: Vec<Vec<Discontinuity>>,
     patches: Vec<Patches>,
 }
@@ -344,16 +344,19 @@ impl Scene {
     }
 
     /// Takes one round with all cues and returns the length of its step, pixels. A step that lowers the posterior is
-    /// halved.
-    pub fn settle(&self, round: &mut Round, planes: &[Planes]) -> f64 {
-        self.look(round);
-        let seen = self.seen(&round.seen_from);
-        let surfaces = self.surfaces(round, &seen);
-        let findings = self.findings_of(round, planes, &seen, &surfaces);
+    /// halved. `seen` is what the last round saw, if this is not the first.
+    pub fn settle(&self, round: &mut Round, seen: &mut Option<Seen>, planes: &[Planes]) -> f64 {
+        let has_moved = self.look(round);
+        let seen = match seen.take().filter(|_| !has_moved) {
+            Some(same) => seen.insert(same),
+            None => seen.insert(self.seen(&round.seen_from)),
+        };
+        let surfaces = self.surfaces(round, seen);
+        let findings = self.findings_of(round, planes, seen, &surfaces);
         let step = step(&findings.total, &findings.prior, &findings.back);
         let step = step * (LONGEST / step.norm()).min(1.0);
         let from = *round;
-        let posterior = self.posterior(&from, planes, &seen, &surfaces, &findings);
+        let posterior = self.posterior(&from, planes, seen, &surfaces, &findings);
         let here = findings.total.value() - 0.5 * findings.back.dot(&(findings.prior * findings.back));
         let mut step = step;
         let mut state = findings.units.step(&round.state, &step);
