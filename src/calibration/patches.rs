@@ -53,10 +53,10 @@ impl Patches {
     pub fn colours(&self, sight: &Sight, state: &State) -> Vec<[f32; 3]> {
         let camera = state.camera(&sight.frame.camera);
         let colour = |point: &Vector3<f64>| {
-            let pixel = camera.project(state.pose.apply(*point).into())?;
-            sight.planes.at(pixel)
+            let pixel = camera.project(state.pose.apply(*point).into());
+            pixel.map_or([f32::NAN; 3], |pixel| sight.planes.at(pixel))
         };
-        self.points.iter().map(|point| colour(point).unwrap_or([f32::NAN; 3])).collect()
+        self.points.iter().map(colour).collect()
     }
 }
 

@@ -47,6 +47,7 @@ pub fn ray(coefficients: &[f64; 8], target: [f64; 2], focal: [f64; 2]) -> Option
 }
 
 /// The radial factor as a function of the squared radius, and its derivative.
+#[inline(always)]
 fn radial([k1, k2, _, _, k3, k4, k5, k6]: &[f64; 8], square: f64) -> [f64; 2] {
     let above = 1.0 + square * (k1 + square * (k2 + square * k3));
     let above_slope = k1 + square * (2.0 * k2 + 3.0 * square * k3);
@@ -61,6 +62,7 @@ fn radial([k1, k2, _, _, k3, k4, k5, k6]: &[f64; 8], square: f64) -> [f64; 2] {
 }
 
 /// The distorted slopes of a ray and their derivative by the slopes.
+#[inline(always)]
 fn distort(coefficients: &[f64; 8], [x, y]: [f64; 2]) -> Distorted {
     let [_, _, p1, p2, ..] = coefficients;
     let square = x * x + y * y;
@@ -81,6 +83,7 @@ fn distort(coefficients: &[f64; 8], [x, y]: [f64; 2]) -> Distorted {
 
 /// Whether a ray lies before the first fold of the lens: its image is not mirrored, and the distorted radius has grown
 /// all the way.
+#[inline(always)]
 fn is_unfolded(coefficients: &[f64; 8], [x, y]: [f64; 2], [[a, b], [c, d]]: [[f64; 2]; 2]) -> bool {
     let square = x * x + y * y;
     let bends = square < LARGEST_SLOPE * LARGEST_SLOPE && a * d - b * c > 0.0 && a + d > 0.0;
@@ -89,6 +92,7 @@ fn is_unfolded(coefficients: &[f64; 8], [x, y]: [f64; 2], [[a, b], [c, d]]: [[f6
 
 /// Whether the distorted radius grows monotonically up to the radius with this square. It does with small coefficients;
 /// otherwise radii in between are sampled.
+#[inline(always)]
 fn grows(coefficients: &[f64; 8], square: f64) -> bool {
     let [k1, k2, _, _, k3, k4, k5, k6] = coefficients.map(f64::abs);
     let below = square * (k4 + square * (k5 + square * k6));
@@ -98,6 +102,12 @@ fn grows(coefficients: &[f64; 8], square: f64) -> bool {
     if below < 1.0 && (1.0 - shrinking) * (1.0 - below) > (1.0 + above) * below_slope {
         return true;
     }
+    grows_at_samples(coefficients, square)
+}
+
+#[cold]
+#[inline(never)]
+fn grows_at_samples(coefficients: &[f64; 8], square: f64) -> bool {
     (1..=FOLD_SAMPLES).all(|k| {
         let square = square * k as f64 / FOLD_SAMPLES as f64;
         let [factor, slope] = radial(coefficients, square);
