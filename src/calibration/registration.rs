@@ -100,9 +100,16 @@ impl Round {
 }
 
 /// The depth discontinuities and the samples that are visible from a state.
-pub(super) struct Seen {
+struct Seen {
     discontinuities: Vec<Vec<Discontinuity>>,
     patches: Vec<Patches>,
+}
+
+/// What a round with all cues leaves to the next one if visibility stays the same.
+pub(super) struct Kept {
+    seen: Seen,
+    /// The curvatures of the cues over surfaces, for each frame.
+    curvatures: Vec<Vec<Matrix>>,
 }
 
 /// An initial pose during its registration, with the depth discontinuities that are seen.
@@ -238,10 +245,11 @@ impl Scene {
         planes: &[Planes],
         seen: &Seen,
         surfaces: &[Surfaces],
+        curvatures: &mut [Vec<Matrix>],
     ) -> Vec<Evidence> {
         let mut evidence = vec![Evidence::default(); self.cues.len()];
-        for surfaces in surfaces {
-            let of_frame = surfaces.shares(units, &round.state);
+        for (surfaces, curvatures) in surfaces.iter().zip(curvatures) {
+            let of_frame = surfaces.shares(units, &round.state, curvatures);
             evidence.iter_mut().zip(of_frame).for_each(|(evidence, shares)| evidence.shares.extend(shares));
         }
         if let Some(edges) = self.cues.iter().position(|cue| *cue == Cue::Edges) {
@@ -253,15 +261,22 @@ impl Scene {
     /// The evidence of all cues at the state of a round.
     pub fn findings(&self, round: &Round, planes: &[Planes]) -> Findings {
         let seen = self.seen(&round.seen_from);
-        self.findings_of(round, planes, &seen, &self.surfaces(round, &seen))
+        self.findings_of(round, planes, &seen, &self.surfaces(round, &seen), &mut vec![vec![]; self.frames.len()])
     }
 
-    fn findings_of(&self, round: &Round, planes: &[Planes], seen: &Seen, surfaces: &[Surfaces]) -> Findings {
+    fn findings_of(
+        &self,
+        round: &Round,
+        planes: &[Planes],
+        seen: &Seen,
+        surfaces: &[Surfaces],
+        curvatures: &mut [Vec<Matrix>],
+    ) -> Findings {
         let units = self.units(&round.state);
         let mut total = Evidence::default();
         let mut cues = vec![];
         let mut traces = round.traces;
-        let evidence = self.evidence(round, &units, planes, seen, surfaces);
+        let evidence = self.evidence(round, &units, planes, seen, surfaces, curvatures);
         for ((&cue, evidence), traces) in self.cues.iter().zip(evidence).zip(&mut traces) {
             *traces += evidence.traces();
             let trust = if cue == Cue::Edges { 1.0 } else { SURFACE_TRUST };
@@ -344,15 +359,15 @@ impl Scene {
     }
 
     /// Takes one round with all cues and returns the length of its step, pixels. A step that lowers the posterior is
-    /// halved. `seen` is what the last round saw, if this is not the first.
-    pub fn settle(&self, round: &mut Round, seen: &mut Option<Seen>, planes: &[Planes]) -> f64 {
-        let has_moved = self.look(round);
-        let seen = match seen.take().filter(|_| !has_moved) {
-            Some(same) => seen.insert(same),
-            None => seen.insert(self.seen(&round.seen_from)),
-        };
+    /// halved. `kept` is what the last round left, if this is not the first.
+    pub fn settle(&self, round: &mut Round, kept: &mut Option<Kept>, planes: &[Planes]) -> f64 {
+        if self.look(round) {
+            *kept = None;
+        }
+        let anew = || Kept { seen: self.seen(&round.seen_from), curvatures: vec![vec![]; self.frames.len()] };
+        let Kept { seen, curvatures } = kept.get_or_insert_with(anew);
         let surfaces = self.surfaces(round, seen);
-        let findings = self.findings_of(round, planes, seen, &surfaces);
+        let findings = self.findings_of(round, planes, seen, &surfaces, curvatures);
         let step = step(&findings.total, &findings.prior, &findings.back);
         let step = step * (LONGEST / step.norm()).min(1.0);
         let from = *round;

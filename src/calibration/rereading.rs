@@ -50,8 +50,8 @@ impl Rereading {
         if self.level == SIGMAS.len() {
             if let Some((_, start)) = self.starts.first_mut() {
                 // Ends early if a step is short.
-                let mut seen = None;
-                let _ = (0..MOST_SETTLING).any(|_| scene.settle(&mut start.round, &mut seen, finest) < ARRIVED);
+                let mut kept = None;
+                let _ = (0..MOST_SETTLING).any(|_| scene.settle(&mut start.round, &mut kept, finest) < ARRIVED);
             }
             return true;
         }

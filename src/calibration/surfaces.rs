@@ -7,7 +7,7 @@ use super::information::Information;
 use super::patches::{Patches, Sight};
 use super::shading::Shading;
 use super::silhouette::Silhouette;
-use super::unknowns::{State, Units};
+use super::unknowns::{Matrix, State, Units};
 
 /// A log likelihood of the colours at a state, tile by tile.
 type LogLikelihood<'a> = Box<dyn Fn(&State, &[[f32; 3]], &mut [f64]) + 'a>;
@@ -47,9 +47,10 @@ impl<'a> Surfaces<'a> {
         tiles.chunks(self.tiles).zip(weights).map(|(tiles, weight)| weight * tiles.iter().sum::<f64>()).sum()
     }
 
-    /// The log likelihood of each cue with its derivatives at a state, tile by tile.
-    pub fn shares(&self, units: &Units, state: &State) -> Vec<Vec<Share>> {
-        differences(units, state, self.tiles, |state| self.at(state))
+    /// The log likelihood of each cue with its derivatives at a state, tile by tile. If there are no `curvatures` yet, they
+    /// are those at this state.
+    pub fn shares(&self, units: &Units, state: &State, curvatures: &mut Vec<Matrix>) -> Vec<Vec<Share>> {
+        differences(units, state, self.tiles, curvatures, |state| self.at(state))
     }
 }
 
