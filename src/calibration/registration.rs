@@ -260,8 +260,18 @@ impl Scene {
 
     /// The evidence of all cues at the state of a round.
     pub fn findings(&self, round: &Round, planes: &[Planes]) -> Findings {
+        self.findings_with(round, planes, vec![])
+    }
+
+    /// The evidence of all cues at the state of a round, of which only the values are right.
+    pub fn values(&self, round: &Round, planes: &[Planes]) -> Findings {
+        self.findings_with(round, planes, vec![Matrix::zeros(); self.cues.len()])
+    }
+
+    fn findings_with(&self, round: &Round, planes: &[Planes], curvatures: Vec<Matrix>) -> Findings {
         let seen = self.seen(&round.seen_from);
-        self.findings_of(round, planes, &seen, &self.surfaces(round, &seen), &mut vec![vec![]; self.frames.len()])
+        let mut curvatures = vec![curvatures; self.frames.len()];
+        self.findings_of(round, planes, &seen, &self.surfaces(round, &seen), &mut curvatures)
     }
 
     fn findings_of(

@@ -77,7 +77,7 @@ impl Rereading {
         for (reading, start) in starts {
             // The prior of a reading is centred on its own pose, so the reading replaces an optimum at the same place.
             let found = Optimum::at(scene, start.round, Some(reading), planes);
-            optima.retain(|other| !other.is_same(&found, scene));
+            optima.retain(|other| !other.is_near(&found.round.state, scene));
             optima.push(found);
         }
         optima::rank(&mut optima);
