@@ -155,9 +155,8 @@ impl Projection {
         let camera = state.camera(&frame.camera);
         let count = frame.points.len();
         let (mut positions, mut pixels) = (vec![[f32::NAN; 3]; count], vec![[f32::NAN; 2]; count]);
-        for index in 0..count {
-            let Some(point) = frame.point(index) else { continue };
-            let point = state.pose.apply(point);
+        for (index, point) in frame.points.iter().enumerate().filter(|(_, point)| !point[2].is_nan()) {
+            let point = state.pose.apply(Vector3::from(point.map(f64::from)));
             positions[index] = [point.x as f32, point.y as f32, point.z as f32];
             if let Some(pixel) = camera.project([point.x, point.y, point.z]) {
                 pixels[index] = pixel.map(|value| value as f32);
