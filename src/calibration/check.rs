@@ -13,7 +13,7 @@ use super::optima::{self, Optimum, SAME_START};
 use super::planes::Planes;
 use super::readings::Reading;
 use super::reason::{CheckReason, Warning, WarningKind};
-use super::registration::{ARRIVED, Findings, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start};
+use super::registration::{ARRIVED, Findings, Kept, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start};
 use super::report::CheckReport;
 use super::rereading::Rereading;
 use super::reviewing::{Refining, Reviewing};
@@ -51,6 +51,7 @@ enum Stage {
         rounds: Vec<Round>,
         at: usize,
         done: usize,
+        kept: Option<Kept>,
         planes: Vec<Planes>,
     },
     Judging {
@@ -184,7 +185,7 @@ impl CalibrationCheck {
                 Stage::Approaching { level: 0, index: 0, planes: self.planes_of(0) }
             }
             Stage::Approaching { level, index, planes } => self.approach(level, index, planes),
-            Stage::Settling { rounds, at, done, planes } => self.settle(rounds, at, done, planes),
+            Stage::Settling { rounds, at, done, kept, planes } => self.settle(rounds, at, done, kept, planes),
             Stage::Judging { rounds, planes } => self.judge(&rounds, planes),
             Stage::Rereading { mut search, planes } => {
                 if search.step(&self.scene, &planes) {
@@ -277,7 +278,7 @@ impl CalibrationCheck {
                 rounds.push(Round { sigma: rounds[0].sigma, ..Round::from(*state, rounds[0].initial) });
             }
         }
-        Stage::Settling { rounds, at: 0, done: 0, planes }
+        Stage::Settling { rounds, at: 0, done: 0, kept: None, planes }
     }
 
     /// Keeps the best poses that differ from each other, at most `most`.
@@ -402,12 +403,19 @@ impl CalibrationCheck {
     }
 
     /// Refines one of the poses by one round with all cues. After the last pose, the candidates are judged.
-    fn settle(&mut self, mut rounds: Vec<Round>, at: usize, done: usize, planes: Vec<Planes>) -> Stage {
-        let moved = self.scene.settle(&mut rounds[at], &planes);
+    fn settle(
+        &mut self,
+        mut rounds: Vec<Round>,
+        at: usize,
+        done: usize,
+        mut kept: Option<Kept>,
+        planes: Vec<Planes>,
+    ) -> Stage {
+        let moved = self.scene.settle(&mut rounds[at], &mut kept, &planes);
         if moved >= ARRIVED && done + 1 < MOST_SETTLING {
-            Stage::Settling { rounds, at, done: done + 1, planes }
+            Stage::Settling { rounds, at, done: done + 1, kept, planes }
         } else if at + 1 < rounds.len() {
-            Stage::Settling { rounds, at: at + 1, done: 0, planes }
+            Stage::Settling { rounds, at: at + 1, done: 0, kept: None, planes }
         } else {
             Stage::Judging { rounds, planes }
         }

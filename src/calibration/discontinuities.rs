@@ -40,7 +40,17 @@ pub(super) struct Discontinuity {
 
 /// All depth discontinuities that the colour camera sees.
 pub(super) fn find(frame: &Frame, projection: &Projection) -> Vec<Discontinuity> {
-    let is_near = |index: &usize| !depth(projection, *index).is_nan() && !projection.is_hidden[*index];
+    let width = frame.grid.width as isize;
+    let is_continued = |index: usize| {
+        let here = depth(projection, index);
+        // At the border of the raster, a wrong neighbour takes the place of none.
+        [1, -1, width, -width].into_iter().all(|stride| {
+            let beside = projection.positions.get(index.wrapping_add_signed(stride));
+            beside.is_some_and(|position| frame.is_beside(f64::from(position[2]) - here, here))
+        })
+    };
+    let is_near =
+        |index: &usize| !projection.is_hidden[*index] && !depth(projection, *index).is_nan() && !is_continued(*index);
     let mut found: Vec<Discontinuity> = vec![];
     let mut directions = vec![usize::MAX; frame.grid.len()];
     for index in (0..frame.grid.len()).filter(is_near) {
@@ -96,7 +106,7 @@ fn ends_before_farther(frame: &Frame, projection: &Projection, index: usize) -> 
         let at = |steps: isize| depth(projection, index.wrapping_add_signed(stride * steps));
         let mut steps = 1..=ahead.min(hole) as isize;
         let steps = steps.find(|&steps| !at(steps).is_nan())?;
-        // Most pixels end here, because a continued slope only reduces the distance.
+        // A continued slope only reduces the distance.
         if at(steps) - here <= gap {
             return None;
         }

@@ -215,13 +215,14 @@ fn edges(planes: &Planes, start: [f64; 2], normal: [f64; 2], window: f64, blur: 
         let offset = k as f64 * pace;
         planes.at([start[0] + offset * normal[0], start[1] + offset * normal[1]])
     };
-    at(0)?;
-    let samples: Vec<Option<[f32; 3]>> = (-half - 2..=half + 2).map(at).collect();
+    if at(0)[0].is_nan() {
+        return None;
+    }
+    let samples: Vec<[f32; 3]> = (-half - 2..=half + 2).map(at).collect();
     let strength = |k: usize| -> f32 {
-        match (samples[k + 1], samples[k - 1]) {
-            (Some(a), Some(b)) => (0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f32>().sqrt(),
-            _ => 0.0,
-        }
+        let (a, b) = (samples[k + 1], samples[k - 1]);
+        let square: f32 = (0..3).map(|c| (a[c] - b[c]).powi(2)).sum();
+        if square.is_nan() { 0.0 } else { square.sqrt() }
     };
     let strengths: Vec<f32> = (1..samples.len() - 1).map(strength).collect();
     let mut edges: Vec<(f64, f64)> = (1..strengths.len() - 1)

@@ -106,6 +106,12 @@ impl Frame {
         HIDDEN_LEAST.max(HIDDEN_SHARE * distance).max(NOISE_SIGMAS * self.noise * distance * distance)
     }
 
+    /// Whether a point is less than [`clear_gap`](Self::clear_gap) behind another one; false for NaN.
+    pub fn is_beside(&self, behind: f64, distance: f64) -> bool {
+        let of_noise = || behind <= NOISE_SIGMAS * self.noise * distance * distance;
+        behind <= HIDDEN_LEAST || behind <= HIDDEN_SHARE * distance || of_noise()
+    }
+
     /// Halves the image and the mask, and adapts the camera; an odd last row or column is dropped.
     pub fn halve(&mut self) {
         let (from, to) = (self.planes.size, self.planes.halved());
@@ -149,9 +155,8 @@ impl Projection {
         let camera = state.camera(&frame.camera);
         let count = frame.points.len();
         let (mut positions, mut pixels) = (vec![[f32::NAN; 3]; count], vec![[f32::NAN; 2]; count]);
-        for index in 0..count {
-            let Some(point) = frame.point(index) else { continue };
-            let point = state.pose.apply(point);
+        for (index, point) in frame.points.iter().enumerate().filter(|(_, point)| !point[2].is_nan()) {
+            let point = state.pose.apply(Vector3::from(point.map(f64::from)));
             positions[index] = [point.x as f32, point.y as f32, point.z as f32];
             if let Some(pixel) = camera.project([point.x, point.y, point.z]) {
                 pixels[index] = pixel.map(|value| value as f32);
@@ -175,11 +180,17 @@ fn hidden(frame: &Frame, positions: &[[f32; 3]], pixels: &[[f32; 2]]) -> Vec<boo
     let mut nearest = vec![f32::INFINITY; columns * rows];
     for (position, pixel) in positions.iter().zip(pixels) {
         if let Some(at) = place(*pixel) {
-            nearest[at] = nearest[at].min(position[2]);
+            if position[2] < nearest[at] {
+                nearest[at] = position[2];
+            }
         }
     }
     let is_behind = |(position, pixel): (&[f32; 3], &[f32; 2])| {
-        place(*pixel).is_none_or(|at| position[2] > nearest[at] + frame.clear_gap(f64::from(nearest[at])) as f32)
+        place(*pixel).is_none_or(|at| {
+            // Few points are behind the least gap.
+            position[2] > nearest[at] + HIDDEN_LEAST as f32
+                && position[2] > nearest[at] + frame.clear_gap(f64::from(nearest[at])) as f32
+        })
     };
     positions.iter().zip(pixels).map(is_behind).collect()
 }

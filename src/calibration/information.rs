@@ -15,7 +15,6 @@
 
 use super::intensity::LEVELS;
 use super::patches::{PATCHES, Patches, Sight};
-use super::unknowns::State;
 
 /// Number of levels of a channel.
 const BINS: usize = 16;
@@ -26,11 +25,9 @@ const FLOOR: f64 = 0.5;
 pub(super) struct Information<'a>(pub &'a Patches);
 
 impl Information<'_> {
-    /// The log likelihood at a state, tile by tile.
-    pub fn evaluate(&self, sight: &Sight, state: &State, out: &mut [f64]) {
-        out.fill(0.0);
-        let features: Vec<[f32; 3]> =
-            self.0.colours(sight, state).map(|colour| colour.map_or([f32::NAN; 3], features)).collect();
+    /// Adds the log likelihood of the samples' colours, tile by tile.
+    pub fn evaluate(&self, sight: &Sight, colours: &[[f32; 3]], out: &mut [f64]) {
+        let features: Vec<[f32; 3]> = colours.iter().copied().map(features).collect();
         let mut joint = vec![[FLOOR; BINS]; PATCHES];
         for channel in 0..3 {
             self.add(&features, channel, &self.0.patches, &mut joint, out);
@@ -134,7 +131,7 @@ mod tests {
             let shift = Vector3::new(f64::from(x), f64::from(y), 0.0) * (DISTANCE / FOCAL);
             let mut out = vec![0.0; 100];
             let state = State::at(Similarity { translation: shift, ..Similarity::identity() });
-            Information(&patches).evaluate(&sight, &state, &mut out);
+            Information(&patches).evaluate(&sight, &patches.colours(&sight, &state), &mut out);
             out.iter().sum::<f64>()
         };
         let shifts = (-FARTHEST..=FARTHEST).flat_map(|x| (-FARTHEST..=FARTHEST).map(move |y| [x, y]));

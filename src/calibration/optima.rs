@@ -34,18 +34,15 @@ pub(super) struct Optimum {
 
 /// The optima of the refined rounds, best first.
 pub(super) fn ranked(scene: &Scene, rounds: &[Round], planes: &[Planes]) -> Vec<Optimum> {
-    let mut optima = vec![];
-    rounds.iter().for_each(|round| add(&mut optima, scene, Optimum::at(scene, *round, None, planes)));
+    let mut optima: Vec<Optimum> = vec![];
+    // If several rounds end at one place, the first one stays, so that rounding decides nothing.
+    for round in rounds {
+        if !optima.iter().any(|other| other.is_near(&round.state, scene)) {
+            optima.push(Optimum::at(scene, *round, None, planes));
+        }
+    }
     rank(&mut optima);
     optima
-}
-
-/// Adds an optimum unless another one is at the same place. If several rounds end at one place, the first one stays, so
-/// that rounding decides nothing.
-pub(super) fn add(optima: &mut Vec<Optimum>, scene: &Scene, optimum: Optimum) {
-    if !optima.iter().any(|other| other.is_same(&optimum, scene)) {
-        optima.push(optimum);
-    }
 }
 
 impl Optimum {
@@ -53,9 +50,9 @@ impl Optimum {
         Self { round, findings: scene.findings(&round, planes), reading, behind: 0.0, scatter: 0.0 }
     }
 
-    /// Whether another optimum is at the same place.
-    pub fn is_same(&self, other: &Self, scene: &Scene) -> bool {
-        let apart = self.findings.units.between(&self.round.state, &other.round.state);
+    /// Whether another optimum at this state would be at the same place.
+    pub fn is_near(&self, state: &State, scene: &Scene) -> bool {
+        let apart = self.findings.units.between(&self.round.state, state);
         apart.fixed_rows::<POSE>(0).norm() <= SAME_START * scene.scale
     }
 
@@ -84,7 +81,8 @@ impl Optimum {
     /// Whether the frames exclude another pose: it fits worse, clearly and significantly.
     pub fn excludes(&self, scene: &Scene, state: State, planes: &[Planes]) -> bool {
         let round = Round { state, seen_from: state, ..self.round };
-        let mut other = Self::at(scene, round, None, planes);
+        let findings = scene.values(&round, planes);
+        let mut other = Self { round, findings, reading: None, behind: 0.0, scatter: 0.0 };
         let weights = self.findings.weights();
         other.compare(&Fit::of(&self.findings, &weights), &weights);
         !other.is_possible()

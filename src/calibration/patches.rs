@@ -49,13 +49,14 @@ impl Patches {
         }
     }
 
-    /// The image's colour at each sample; `None` off the image.
-    pub fn colours<'a>(&'a self, sight: &'a Sight, state: &'a State) -> impl Iterator<Item = Option<[f32; 3]>> + 'a {
+    /// The image's colour at each sample; NaN off the image.
+    pub fn colours(&self, sight: &Sight, state: &State) -> Vec<[f32; 3]> {
         let camera = state.camera(&sight.frame.camera);
-        self.points.iter().map(move |point| {
-            let [x, y, z] = state.pose.apply(*point).into();
-            camera.project([x, y, z]).and_then(|pixel| sight.planes.at(pixel))
-        })
+        let colour = |point: &Vector3<f64>| {
+            let pixel = camera.project(state.pose.apply(*point).into());
+            pixel.map_or([f32::NAN; 3], |pixel| sight.planes.at(pixel))
+        };
+        self.points.iter().map(colour).collect()
     }
 }
 

@@ -60,19 +60,18 @@ impl Planes {
         Self { size, pixels: (0..size.len()).map(mean).collect() }
     }
 
-    /// Bilinear values at a position; `None` outside the image and the part of it that is used.
-    pub fn at(&self, [column, row]: [f64; 2]) -> Option<[f32; 3]> {
+    /// Bilinear values at a position; NaN outside the image and the part of it that is used.
+    pub fn at(&self, [column, row]: [f64; 2]) -> [f32; 3] {
         let Size { width, height } = self.size;
         let inside = column >= 0.0 && row >= 0.0 && column <= (width - 1) as f64 && row <= (height - 1) as f64;
         if !inside {
-            return None;
+            return [f32::NAN; 3];
         }
         let (left, top) = ((column as usize).min(width - 2), (row as usize).min(height - 2));
         let (u, v) = ((column - left as f64) as f32, (row - top as f64) as f32);
         let at = top * width + left;
         let [a, b, c, d] = [at, at + 1, at + width, at + width + 1].map(|index| self.pixels[index]);
         let mean = |k: usize| (1.0 - v) * ((1.0 - u) * a[k] + u * b[k]) + v * ((1.0 - u) * c[k] + u * d[k]);
-        let means = [0, 1, 2].map(mean);
-        means.iter().all(|mean| !mean.is_nan()).then_some(means)
+        [0, 1, 2].map(mean)
     }
 }

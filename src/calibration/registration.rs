@@ -8,7 +8,6 @@
 use nalgebra::Vector3;
 
 use super::cue::Cue;
-use super::differences::differences;
 use super::discontinuities::Discontinuity;
 use super::edges::{EdgeField, blur};
 use super::evidence::{Evidence, Share, Tiles, Traces};
@@ -16,7 +15,7 @@ use super::frame::{Frame, Projection};
 use super::patches::{Patches, Sight, group};
 use super::planes::Planes;
 use super::surface::{self, Sample};
-use super::surfaces::{LogLikelihood, log_likelihood};
+use super::surfaces::Surfaces;
 use super::unknowns::{BIAS, FOCAL, Matrix, SIDES, State, Units, Vector, solve};
 
 /// Sigma of edges at each level, pixels of an image 640 wide: it falls from the error that the coarse search leaves to
@@ -104,6 +103,13 @@ impl Round {
 struct Seen {
     discontinuities: Vec<Vec<Discontinuity>>,
     patches: Vec<Patches>,
+}
+
+/// What a round with all cues leaves to the next one if visibility stays the same.
+pub(super) struct Kept {
+    seen: Seen,
+    /// The curvatures of the cues over surfaces, for each frame.
+    curvatures: Vec<Vec<Matrix>>,
 }
 
 /// An initial pose during its registration, with the depth discontinuities that are seen.
@@ -213,39 +219,75 @@ impl Scene {
         Seen { discontinuities, patches }
     }
 
-    /// The log likelihood of one of the cues by tiles, with its derivatives at the state of a round.
-    fn evidence(&self, cue: Cue, round: &Round, units: &Units, planes: &[Planes], seen: &Seen) -> Evidence {
-        let mut evidence = Evidence::default();
-        for (index, frame) in self.frames.iter().enumerate() {
-            if cue == Cue::Edges {
-                let sight = Sight { frame, planes: &planes[index] };
-                let discontinuities =
-                    EdgeField::moved(frame, &seen.discontinuities[index], &round.seen_from, &round.state);
-                add_edges(sight, &discontinuities, round, units, &mut evidence);
-                continue;
-            }
-            let sight = Sight { frame, planes: &self.surface_planes[index] };
-            let count = Tiles::new(sight.planes.size).count();
-            evidence.shares.extend(match log_likelihood(cue, &seen.patches[index], sight, &round.state) {
-                Some(of_cue) => differences(units, &round.state, count, of_cue),
-                None => vec![Share::none(); count],
-            });
+    /// The cues over the surfaces of each frame, at the state of a round.
+    fn surfaces<'a>(&'a self, round: &Round, seen: &'a Seen) -> Vec<Surfaces<'a>> {
+        let of_frame = |((frame, planes), patches): ((&'a Frame, &'a Planes), &'a Patches)| {
+            Surfaces::new(&self.cues, patches, Sight { frame, planes }, &round.state)
+        };
+        self.frames.iter().zip(&self.surface_planes).zip(&seen.patches).map(of_frame).collect()
+    }
+
+    /// The log likelihood of the edges of all frames at a state, with the discontinuities that a round sees.
+    fn edges(&self, round: &Round, units: &Units, planes: &[Planes], seen: &[Vec<Discontinuity>]) -> (Evidence, f64) {
+        let (mut evidence, mut count) = (Evidence::default(), 0.0);
+        for ((frame, planes), discontinuities) in self.frames.iter().zip(planes).zip(seen) {
+            let moved = EdgeField::moved(frame, discontinuities, &round.seen_from, &round.state);
+            count += add_edges(Sight { frame, planes }, &moved, round, units, &mut evidence);
+        }
+        (evidence, count)
+    }
+
+    /// The log likelihood of each cue by tiles, with its derivatives at the state of a round.
+    fn evidence(
+        &self,
+        round: &Round,
+        units: &Units,
+        planes: &[Planes],
+        seen: &Seen,
+        surfaces: &[Surfaces],
+        curvatures: &mut [Vec<Matrix>],
+    ) -> Vec<Evidence> {
+        let mut evidence = vec![Evidence::default(); self.cues.len()];
+        for (surfaces, curvatures) in surfaces.iter().zip(curvatures) {
+            let of_frame = surfaces.shares(units, &round.state, curvatures);
+            evidence.iter_mut().zip(of_frame).for_each(|(evidence, shares)| evidence.shares.extend(shares));
+        }
+        if let Some(edges) = self.cues.iter().position(|cue| *cue == Cue::Edges) {
+            evidence[edges] = self.edges(round, units, planes, &seen.discontinuities).0;
         }
         evidence
     }
 
     /// The evidence of all cues at the state of a round.
     pub fn findings(&self, round: &Round, planes: &[Planes]) -> Findings {
-        self.findings_of(round, planes, &self.seen(&round.seen_from))
+        self.findings_with(round, planes, vec![])
     }
 
-    fn findings_of(&self, round: &Round, planes: &[Planes], seen: &Seen) -> Findings {
+    /// The evidence of all cues at the state of a round, of which only the values are right.
+    pub fn values(&self, round: &Round, planes: &[Planes]) -> Findings {
+        self.findings_with(round, planes, vec![Matrix::zeros(); self.cues.len()])
+    }
+
+    fn findings_with(&self, round: &Round, planes: &[Planes], curvatures: Vec<Matrix>) -> Findings {
+        let seen = self.seen(&round.seen_from);
+        let mut curvatures = vec![curvatures; self.frames.len()];
+        self.findings_of(round, planes, &seen, &self.surfaces(round, &seen), &mut curvatures)
+    }
+
+    fn findings_of(
+        &self,
+        round: &Round,
+        planes: &[Planes],
+        seen: &Seen,
+        surfaces: &[Surfaces],
+        curvatures: &mut [Vec<Matrix>],
+    ) -> Findings {
         let units = self.units(&round.state);
         let mut total = Evidence::default();
         let mut cues = vec![];
         let mut traces = round.traces;
-        for (&cue, traces) in self.cues.iter().zip(&mut traces) {
-            let evidence = self.evidence(cue, round, &units, planes, seen);
+        let evidence = self.evidence(round, &units, planes, seen, surfaces, curvatures);
+        for ((&cue, evidence), traces) in self.cues.iter().zip(evidence).zip(&mut traces) {
             *traces += evidence.traces();
             let trust = if cue == Cue::Edges { 1.0 } else { SURFACE_TRUST };
             let weight = trust * traces.weight();
@@ -262,33 +304,18 @@ impl Scene {
         round: &'a Round,
         planes: &'a [Planes],
         seen: &'a Seen,
+        surfaces: &'a [Surfaces],
         findings: &'a Findings,
     ) -> impl Fn(&State) -> f64 + 'a {
-        let weighed = findings.cues.iter().flat_map(move |(cue, _, weight)| {
-            let of_frame = move |(index, frame): (usize, &'a Frame)| {
-                let sight = Sight { frame, planes: &self.surface_planes[index] };
-                let of_cue = log_likelihood(*cue, &seen.patches[index], sight, &round.state)?;
-                Some((*weight, Tiles::new(sight.planes.size).count(), of_cue))
-            };
-            self.frames.iter().enumerate().filter_map(of_frame)
-        });
-        let surfaces: Vec<_> = weighed.collect();
+        let weights = findings.weights();
         let edges: f64 = findings.cues.iter().filter(|cue| cue.0 == Cue::Edges).map(|cue| cue.2).sum();
         move |state| {
-            let of_surface = |(weight, count, of_cue): &(f64, usize, LogLikelihood)| {
-                let mut out = vec![0.0; *count];
-                of_cue(state, &mut out);
-                weight * out.iter().sum::<f64>()
-            };
-            let mut evidence = Evidence::default();
             let moved = Round { state: *state, ..*round };
-            for ((frame, planes), discontinuities) in self.frames.iter().zip(planes).zip(&seen.discontinuities) {
-                let discontinuities = EdgeField::moved(frame, discontinuities, &round.seen_from, state);
-                add_edges(Sight { frame, planes }, &discontinuities, &moved, &findings.units, &mut evidence);
-            }
+            let (evidence, _) = self.edges(&moved, &findings.units, planes, &seen.discontinuities);
             let back = findings.units.between(&round.initial, state);
             let prior = 0.5 * back.dot(&(findings.prior * back));
-            surfaces.iter().map(of_surface).sum::<f64>() + edges * evidence.value() - prior
+            let surfaces: f64 = surfaces.iter().map(|surfaces| surfaces.sum(state, &weights)).sum();
+            surfaces + edges * evidence.value() - prior
         }
     }
 
@@ -298,11 +325,7 @@ impl Scene {
         for _ in 0..ROUNDS {
             let state = start.round.state;
             let units = self.units(&state);
-            let (mut evidence, mut count) = (Evidence::default(), 0.0);
-            for ((frame, planes), discontinuities) in self.frames.iter().zip(planes).zip(&start.discontinuities) {
-                let moved = EdgeField::moved(frame, discontinuities, &start.round.seen_from, &state);
-                count += add_edges(Sight { frame, planes }, &moved, &start.round, &units, &mut evidence);
-            }
+            let (evidence, count) = self.edges(&start.round, &units, planes, &start.discontinuities);
             let mean = evidence.value() / f64::max(count, 1.0);
             let mut total = Evidence::default();
             evidence.add_to(&mut total, evidence.traces().weight());
@@ -346,16 +369,20 @@ impl Scene {
     }
 
     /// Takes one round with all cues and returns the length of its step, pixels. A step that lowers the posterior is
-    /// halved.
-    pub fn settle(&self, round: &mut Round, planes: &[Planes]) -> f64 {
-        self.look(round);
-        let seen = self.seen(&round.seen_from);
-        let findings = self.findings_of(round, planes, &seen);
+    /// halved. `kept` is what the last round left, if this is not the first.
+    pub fn settle(&self, round: &mut Round, kept: &mut Option<Kept>, planes: &[Planes]) -> f64 {
+        if self.look(round) {
+            *kept = None;
+        }
+        let anew = || Kept { seen: self.seen(&round.seen_from), curvatures: vec![vec![]; self.frames.len()] };
+        let Kept { seen, curvatures } = kept.get_or_insert_with(anew);
+        let surfaces = self.surfaces(round, seen);
+        let findings = self.findings_of(round, planes, seen, &surfaces, curvatures);
         let step = step(&findings.total, &findings.prior, &findings.back);
         let step = step * (LONGEST / step.norm()).min(1.0);
         let from = *round;
-        let posterior = self.posterior(&from, planes, &seen, &findings);
-        let here = posterior(&round.state);
+        let posterior = self.posterior(&from, planes, seen, &surfaces, &findings);
+        let here = findings.total.value() - 0.5 * findings.back.dot(&(findings.prior * findings.back));
         let mut step = step;
         let mut state = findings.units.step(&round.state, &step);
         let mut halvings = 0;

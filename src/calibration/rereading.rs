@@ -50,7 +50,8 @@ impl Rereading {
         if self.level == SIGMAS.len() {
             if let Some((_, start)) = self.starts.first_mut() {
                 // Ends early if a step is short.
-                let _ = (0..MOST_SETTLING).any(|_| scene.settle(&mut start.round, finest) < ARRIVED);
+                let mut kept = None;
+                let _ = (0..MOST_SETTLING).any(|_| scene.settle(&mut start.round, &mut kept, finest) < ARRIVED);
             }
             return true;
         }
@@ -76,7 +77,7 @@ impl Rereading {
         for (reading, start) in starts {
             // The prior of a reading is centred on its own pose, so the reading replaces an optimum at the same place.
             let found = Optimum::at(scene, start.round, Some(reading), planes);
-            optima.retain(|other| !other.is_same(&found, scene));
+            optima.retain(|other| !other.is_near(&found.round.state, scene));
             optima.push(found);
         }
         optima::rank(&mut optima);

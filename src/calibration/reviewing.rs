@@ -10,7 +10,7 @@ use super::distortion::GAIN;
 use super::frame::Frame;
 use super::planes::Planes;
 use super::readings::Reading;
-use super::registration::{ARRIVED, MOST_SETTLING, Round, SIGMAS, Scene};
+use super::registration::{ARRIVED, Kept, MOST_SETTLING, Round, SIGMAS, Scene};
 use super::unknowns::State;
 
 /// Maximum number of frames in which readings are compared. All frames of a rig are stored alike.
@@ -39,6 +39,7 @@ pub(super) struct Refining {
     pub scene: Scene,
     pub round: Round,
     pub planes: Vec<Planes>,
+    kept: Option<Kept>,
     done: usize,
 }
 
@@ -103,12 +104,12 @@ impl Refining {
             read.find_anew(&mut start);
             read.approach(&mut start, sigma * read.scale, &planes);
         }
-        Some(Self { reading, scene: read, round: start.round, planes, done: 0 })
+        Some(Self { reading, scene: read, round: start.round, planes, kept: None, done: 0 })
     }
 
     fn step(&mut self) -> bool {
         self.done += 1;
-        self.scene.settle(&mut self.round, &self.planes) < ARRIVED || self.done == MOST_SETTLING
+        self.scene.settle(&mut self.round, &mut self.kept, &self.planes) < ARRIVED || self.done == MOST_SETTLING
     }
 }
 

@@ -7,7 +7,7 @@ use super::frame::Projection;
 use super::patches::{Patches, Sight};
 use super::planes::Planes;
 use super::registration::{Round, Scene};
-use super::surfaces::log_likelihood;
+use super::surfaces::Surfaces;
 use super::unknowns::{POSE, State, Units, Vector};
 
 /// Farthest offsets to each side: degrees about an axis, millimetres along one.
@@ -97,14 +97,6 @@ fn surfaces_along(scene: &Scene, round: &Round, cue: Cue, index: usize, states: 
     let planes = &scene.surface_planes[index];
     let sight = Sight { frame, planes };
     let patches = Patches::new(&scene.samples[index], &Projection::new(frame, &round.state), frame);
-    let mut out = vec![0.0; Tiles::new(planes.size).count()];
-    let of_cue = log_likelihood(cue, &patches, sight, &round.state);
-    let mut value = |state: &State| {
-        out.fill(0.0);
-        if let Some(of_cue) = &of_cue {
-            of_cue(state, &mut out);
-        }
-        out.iter().sum::<f64>()
-    };
-    states.iter().map(&mut value).collect()
+    let surfaces = Surfaces::new(&[cue], &patches, sight, &round.state);
+    states.iter().map(|state| surfaces.sum(state, &[1.0])).collect()
 }

@@ -7,12 +7,12 @@
 
 use nalgebra::{SMatrix, SVector, Vector3};
 
-use super::patches::{PATCHES, Patches, Sight};
-use super::unknowns::State;
+use super::patches::{PATCHES, Patches};
 
 /// Number of harmonics of degrees 1 and 2; that of degree 0 is the mean of a patch.
 const HARMONICS: usize = 8;
 type Harmonics = SVector<f64, HARMONICS>;
+type Squares = SMatrix<f64, HARMONICS, HARMONICS>;
 
 /// Number that is added to intensities before the logarithm, the noise of a dark pixel of 8 bits.
 const DARKEST: f32 = 0.02;
@@ -25,52 +25,66 @@ const LEAST_SCALE: f64 = 0.005;
 pub(super) struct Shading<'a> {
     patches: &'a Patches,
     harmonics: Vec<Harmonics>,
+    /// Sum of the squares of all harmonics.
+    squares: Squares,
     scale: f64,
 }
 
 impl<'a> Shading<'a> {
-    pub fn new(patches: &'a Patches, sight: &Sight, state: &State) -> Self {
+    /// `colours` are those of the first pose.
+    pub fn new(patches: &'a Patches, colours: &[[f32; 3]]) -> Self {
         let mut harmonics: Vec<Harmonics> = patches.normals.iter().map(basis).collect();
-        remove_means(&patches.patches, &mut harmonics, |_| true);
-        let mut cue = Self { patches, harmonics, scale: 1.0 };
-        let mut sizes: Vec<f32> = cue.residuals(sight, state).into_iter().flatten().map(|r| r.norm() as f32).collect();
+        remove_means(&patches.patches, &mut harmonics);
+        let mut squares = Squares::zeros();
+        harmonics.iter().for_each(|harmonics| add_square(&mut squares, harmonics, 1.0));
+        let mut cue = Self { patches, harmonics, squares, scale: 1.0 };
+        let residuals = cue.residuals(colours);
+        let mut sizes: Vec<f32> = residuals.iter().map(|r| r.norm() as f32).filter(|size| !size.is_nan()).collect();
         if !sizes.is_empty() {
             cue.scale = f64::from(crate::numeric::quantile(&mut sizes, 0.5)).max(LEAST_SCALE);
         }
         cue
     }
 
-    /// The log likelihood at a state, tile by tile.
-    pub fn evaluate(&self, sight: &Sight, state: &State, out: &mut [f64]) {
-        out.fill(0.0);
-        for (residual, &tile) in self.residuals(sight, state).iter().zip(&self.patches.tiles) {
+    /// Adds the log likelihood of the samples' colours, tile by tile.
+    pub fn evaluate(&self, colours: &[[f32; 3]], out: &mut [f64]) {
+        let scale = 1.0 / (self.scale * self.scale);
+        for (residual, &tile) in self.residuals(colours).iter().zip(&self.patches.tiles) {
+            let square = residual.norm_squared() * scale;
             // A point off the image counts like the median, so that a pose gains nothing by losing points.
-            let square = residual.map_or(1.0, |residual| residual.norm_squared() / (self.scale * self.scale));
-            out[tile as usize] -= (1.0 + square).ln();
+            out[tile as usize] -= (1.0 + if square.is_nan() { 1.0 } else { square }).ln();
         }
     }
 
-    /// Log colours less the means of their patches and the fitted light.
-    fn residuals(&self, sight: &Sight, state: &State) -> Vec<Option<Vector3<f64>>> {
-        let log = |colour: [f32; 3]| Vector3::from(colour.map(|value| f64::from((value + DARKEST).ln())));
-        let known: Vec<Option<Vector3<f64>>> =
-            self.patches.colours(sight, state).map(|colour| colour.map(log)).collect();
-        let mut logs: Vec<Vector3<f64>> = known.iter().map(|log| log.unwrap_or_default()).collect();
-        remove_means(&self.patches.patches, &mut logs, |index| known[index].is_some());
-        let mut matrix = SMatrix::<f64, HARMONICS, HARMONICS>::zeros();
+    /// Log colours less the means of their patches and the fitted light; NaN where there is no colour.
+    fn residuals(&self, colours: &[[f32; 3]]) -> Vec<Vector3<f64>> {
+        let log = |colour: &[f32; 3]| Vector3::from(colour.map(|value| f64::from((value + DARKEST).ln())));
+        let mut logs: Vec<Vector3<f64>> = colours.iter().map(log).collect();
+        remove_means(&self.patches.patches, &mut logs);
+        // Nearly all samples have colours, so those without are subtracted from the sum over all.
+        let mut matrix = self.squares;
         let mut sums = SMatrix::<f64, HARMONICS, 3>::zeros();
-        for (index, harmonics) in self.harmonics.iter().enumerate().filter(|&(index, _)| known[index].is_some()) {
-            // Only the lower half is filled; the factorisation reads no more.
-            for column in 0..HARMONICS {
-                (column..HARMONICS).for_each(|row| matrix[(row, column)] += harmonics[row] * harmonics[column]);
+        for (harmonics, log) in self.harmonics.iter().zip(&logs) {
+            if log.x.is_nan() {
+                add_square(&mut matrix, harmonics, -1.0);
+            } else {
+                (0..3).for_each(|k| sums.column_mut(k).axpy(log[k], harmonics, 1.0));
             }
-            sums += harmonics * logs[index].transpose();
         }
         let ridge = RIDGE * matrix.trace() / HARMONICS as f64 + f64::MIN_POSITIVE;
         (0..HARMONICS).for_each(|k| matrix[(k, k)] += ridge);
         let light = matrix.cholesky().map_or(SMatrix::zeros(), |c| c.solve(&sums));
-        let residual = |index: usize| known[index].map(|_| logs[index] - light.transpose() * self.harmonics[index]);
-        (0..known.len()).map(residual).collect()
+        for (log, harmonics) in logs.iter_mut().zip(&self.harmonics) {
+            (0..3).for_each(|k| log[k] -= light.column(k).dot(harmonics));
+        }
+        logs
+    }
+}
+
+/// Adds a vector's square. Only the lower half is filled; the factorisation reads no more.
+fn add_square(squares: &mut Squares, harmonics: &Harmonics, weight: f64) {
+    for column in 0..HARMONICS {
+        (column..HARMONICS).for_each(|row| squares[(row, column)] += weight * harmonics[row] * harmonics[column]);
     }
 }
 
@@ -90,11 +104,11 @@ fn basis(n: &Vector3<f64>) -> Harmonics {
     ])
 }
 
-/// Subtracts from each value the mean over its patch.
-fn remove_means<const N: usize>(patches: &[u8], values: &mut [SVector<f64, N>], is_known: impl Fn(usize) -> bool) {
+/// Subtracts from each value the mean over its patch; NaN counts nowhere.
+fn remove_means<const N: usize>(patches: &[u8], values: &mut [SVector<f64, N>]) {
     let mut sums = [(SVector::<f64, N>::zeros(), 0.0); PATCHES];
-    for (index, value) in values.iter().enumerate().filter(|&(index, _)| is_known(index)) {
-        let (sum, count) = &mut sums[patches[index] as usize];
+    for (value, &patch) in values.iter().zip(patches).filter(|(value, _)| !value[0].is_nan()) {
+        let (sum, count) = &mut sums[patch as usize];
         *sum += value;
         *count += 1.0;
     }

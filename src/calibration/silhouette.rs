@@ -28,9 +28,8 @@ impl<'a> Silhouette<'a> {
         Some(Self { patches, mask: MaskDistance::new(size, mask), tiles: Tiles::new(size) })
     }
 
-    /// The log likelihood at a state, tile by tile.
+    /// Adds the log likelihood at a state, tile by tile.
     pub fn evaluate(&self, sight: &Sight, state: &State, out: &mut [f64]) {
-        out.fill(0.0);
         let camera = state.camera(&sight.frame.camera);
         for (point, &tile) in self.patches.points.iter().zip(&self.patches.tiles) {
             let [x, y, z] = state.pose.apply(*point).into();

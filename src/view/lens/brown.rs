@@ -14,10 +14,25 @@ pub type Distorted = ([f64; 2], [[f64; 2]; 2]);
 /// outside the picture.
 const ROUNDING: f64 = 1e-13;
 
-/// The distorted slopes of a ray before the first fold of the lens, and their derivative by the slopes.
-pub fn project(coefficients: &[f64; 8], ray: [f64; 2]) -> Option<Distorted> {
+/// The distorted slopes of a ray before the first fold of the lens.
+#[inline(always)]
+pub fn project(coefficients: &[f64; 8], ray: [f64; 2]) -> Option<[f64; 2]> {
     let (distorted, gradient) = distort(coefficients, ray);
-    is_unfolded(coefficients, ray, gradient).then_some((distorted, gradient))
+    is_unfolded(coefficients, ray, gradient).then_some(distorted)
+}
+
+/// The distorted slopes of a ray and their derivative by the slopes, and whether the ray lies before the first fold of
+/// the lens.
+#[inline(never)]
+fn distorted(coefficients: &[f64; 8], ray: [f64; 2]) -> (Distorted, bool) {
+    let (distorted, gradient) = distort(coefficients, ray);
+    ((distorted, gradient), is_unfolded(coefficients, ray, gradient))
+}
+
+/// [`project`] with the derivative by the slopes.
+pub fn project_with_gradient(coefficients: &[f64; 8], ray: [f64; 2]) -> Option<Distorted> {
+    let (distorted, is_unfolded) = distorted(coefficients, ray);
+    is_unfolded.then_some(distorted)
 }
 
 /// The slopes of the ray that is distorted to `target`, if there is one.
@@ -33,10 +48,10 @@ pub fn ray(coefficients: &[f64; 8], target: [f64; 2], focal: [f64; 2]) -> Option
     let share = if radius > 0.0 { start / radius } else { 0.0 };
     let mut ray = target.map(|part| share * part);
     for _ in 0..MOST_ROUNDS {
-        let (distorted, gradient) = distort(coefficients, ray);
+        let ((distorted, gradient), is_unfolded) = distorted(coefficients, ray);
         let [right, down] = [target[0] - distorted[0], target[1] - distorted[1]];
         if pixels(focal, [right, down]) < RETURN_DISTANCE + ROUNDING * pixels(focal, target) {
-            return is_unfolded(coefficients, ray, gradient).then_some(ray);
+            return is_unfolded.then_some(ray);
         }
         let [[a, b], [c, d]] = gradient;
         let determinant = a * d - b * c;
@@ -47,6 +62,7 @@ pub fn ray(coefficients: &[f64; 8], target: [f64; 2], focal: [f64; 2]) -> Option
 }
 
 /// The radial factor as a function of the squared radius, and its derivative.
+#[inline(always)]
 fn radial([k1, k2, _, _, k3, k4, k5, k6]: &[f64; 8], square: f64) -> [f64; 2] {
     let above = 1.0 + square * (k1 + square * (k2 + square * k3));
     let above_slope = k1 + square * (2.0 * k2 + 3.0 * square * k3);
@@ -61,6 +77,7 @@ fn radial([k1, k2, _, _, k3, k4, k5, k6]: &[f64; 8], square: f64) -> [f64; 2] {
 }
 
 /// The distorted slopes of a ray and their derivative by the slopes.
+#[inline(always)]
 fn distort(coefficients: &[f64; 8], [x, y]: [f64; 2]) -> Distorted {
     let [_, _, p1, p2, ..] = coefficients;
     let square = x * x + y * y;
@@ -81,6 +98,7 @@ fn distort(coefficients: &[f64; 8], [x, y]: [f64; 2]) -> Distorted {
 
 /// Whether a ray lies before the first fold of the lens: its image is not mirrored, and the distorted radius has grown
 /// all the way.
+#[inline(always)]
 fn is_unfolded(coefficients: &[f64; 8], [x, y]: [f64; 2], [[a, b], [c, d]]: [[f64; 2]; 2]) -> bool {
     let square = x * x + y * y;
     let bends = square < LARGEST_SLOPE * LARGEST_SLOPE && a * d - b * c > 0.0 && a + d > 0.0;
@@ -89,15 +107,27 @@ fn is_unfolded(coefficients: &[f64; 8], [x, y]: [f64; 2], [[a, b], [c, d]]: [[f6
 
 /// Whether the distorted radius grows monotonically up to the radius with this square. It does with small coefficients;
 /// otherwise radii in between are sampled.
+#[inline(always)]
 fn grows(coefficients: &[f64; 8], square: f64) -> bool {
-    let [k1, k2, _, _, k3, k4, k5, k6] = coefficients.map(f64::abs);
+    let [k1, k2, _, _, k3, k4, k5, k6] = coefficients;
+    let [k1, k2, k3] = [k1.abs(), k2.abs(), k3.abs()];
+    let shrinking = square * (3.0 * k1 + square * (5.0 * k2 + 7.0 * square * k3));
+    if *k4 == 0.0 && *k5 == 0.0 && *k6 == 0.0 {
+        return shrinking < 1.0 || grows_at_samples(coefficients, square);
+    }
+    let [k4, k5, k6] = [k4.abs(), k5.abs(), k6.abs()];
     let below = square * (k4 + square * (k5 + square * k6));
     let below_slope = 2.0 * square * (k4 + square * (2.0 * k5 + 3.0 * square * k6));
     let above = square * (k1 + square * (k2 + square * k3));
-    let shrinking = square * (3.0 * k1 + square * (5.0 * k2 + 7.0 * square * k3));
     if below < 1.0 && (1.0 - shrinking) * (1.0 - below) > (1.0 + above) * below_slope {
         return true;
     }
+    grows_at_samples(coefficients, square)
+}
+
+#[cold]
+#[inline(never)]
+fn grows_at_samples(coefficients: &[f64; 8], square: f64) -> bool {
     (1..=FOLD_SAMPLES).all(|k| {
         let square = square * k as f64 / FOLD_SAMPLES as f64;
         let [factor, slope] = radial(coefficients, square);

@@ -77,10 +77,11 @@ impl Lens {
 
     /// The distorted position of a point; `None` behind the camera, beyond the fold, and at the camera's centre. A
     /// fisheye also sees points beside and behind it, up to the angle at which it folds.
+    #[inline(always)]
     pub(super) fn project(&self, point: [f64; 3]) -> Option<[f64; 2]> {
         match self {
             Self::None => slopes(point),
-            Self::Brown(coefficients) => brown::project(coefficients, slopes(point)?).map(|(distorted, _)| distorted),
+            Self::Brown(coefficients) => brown::project(coefficients, slopes(point)?),
             Self::Fisheye(coefficients) => fisheye::project(coefficients, point),
         }
     }
@@ -89,7 +90,7 @@ impl Lens {
     pub(super) fn project_with_gradient(&self, point: [f64; 3]) -> Option<Projection> {
         match self {
             Self::None => through_slopes(point, |ray| Some((ray, [[1.0, 0.0], [0.0, 1.0]]))),
-            Self::Brown(coefficients) => through_slopes(point, |ray| brown::project(coefficients, ray)),
+            Self::Brown(coefficients) => through_slopes(point, |ray| brown::project_with_gradient(coefficients, ray)),
             Self::Fisheye(coefficients) => fisheye::project_with_gradient(coefficients, point),
         }
     }
