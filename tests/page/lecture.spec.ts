@@ -28,12 +28,14 @@ async function faults(page: Page): Promise<string[]> {
   const card = await page.locator(".learn-slide .learn-figure").boundingBox();
   const width = page.viewportSize()?.width ?? 0;
   const texts = (await textsIn(page, ".learn-slide")).filter(({ drawing }) => drawing === undefined);
+  const beside = ({ isInFigure, right }: SlideText) => isInFigure && card !== null && right > card.x + card.width;
   const below = ({ isInFigure, bottom }: SlideText) => isInFigure && card !== null && bottom > card.y + card.height;
   return [
     ...(over > 0 ? [`${over} px below the slide`] : []),
     ...tooSmall(texts),
     ...texts.filter(below).map(({ words }) => `below the card: ${words}`),
     ...texts.filter(({ right }) => right > width).map(({ words }) => `beyond the edge: ${words}`),
+    ...texts.filter(beside).map(({ words }) => `beside the card: ${words}`),
   ];
 }
 
@@ -63,7 +65,8 @@ test("each question fits its slide, and its answer comes after the guess", LONG,
       await settled(page);
       expect(await faults(page), `${id}, exercise ${at + 1}`).toEqual([]);
       await exercise(page).locator("summary").click();
-      await expect(dialog(page).locator(".learn-figure")).toBeHidden();
+      // The answer speaks about the figure, so both are seen.
+      await expect(dialog(page).locator(".learn-figure .learn-canvas").first()).toBeVisible();
       expect(await faults(page), `${id}, answer of exercise ${at + 1}`).toEqual([]);
     }
     await page.keyboard.press("q");
@@ -371,6 +374,31 @@ test("plots of slides are legible: 200 px wide at least, and pictures 128 px", L
       page.locator(selector).evaluateAll((all) => all.map((each) => each.getBoundingClientRect().width));
     for (const width of await widths(".learn-slide .learn-plot")) expect(width, id).toBeGreaterThanOrEqual(200);
     for (const width of await widths(".learn-slide .learn-canvas")) expect(width, id).toBeGreaterThanOrEqual(128);
+  }
+});
+
+test("pictures of slides take the room that is free", LONG, async ({ page }) => {
+  for (const [width, height] of [
+    [1280, 720],
+    [1920, 1080],
+  ] as const) {
+    await page.setViewportSize({ width, height });
+    for (const id of LESSONS) {
+      await open(page, `at=${id}&slides`);
+      await expect(figure(page)).toHaveAttribute("aria-busy", "false");
+      const { small, below } = await figure(page).evaluate((card) => {
+        const bottom = (part: Element) => part.getBoundingClientRect().bottom;
+        const lowest = Math.max(...[...card.querySelectorAll(".learn-panel > :last-child")].map(bottom));
+        const isSmall = (canvas: HTMLElement) => {
+          const { clientWidth = 0, clientHeight = 0 } = canvas.parentElement ?? {};
+          return canvas.clientWidth < Math.min(clientWidth, clientHeight) - 1;
+        };
+        const pictures = [...card.querySelectorAll<HTMLElement>(".learn-canvas")];
+        return { small: pictures.filter(isSmall).length, below: bottom(card) - lowest };
+      });
+      expect(small, `${id} at ${width} px`).toBe(0);
+      expect(below, `${id} at ${width} px`).toBeLessThan(0.03 * height);
+    }
   }
 });
 

@@ -7,9 +7,9 @@ import { svg } from "./svg";
 
 /** The size of the drawing, which is as wide as its place: scaling it would make its type too small in a narrow place. */
 const WIDTH = 320;
-/** Landscape format if there is room, not too low to be legible and not higher than a screen or its place. */
-const heightOf = (width: number, most: number): number =>
-  Math.round(Math.min(most, Math.max(Math.min(width, 200), Math.min(0.5 * width, 280, 0.28 * innerHeight))));
+/** Landscape format if there is room, not too low to be legible and not higher than a screen. */
+const heightOf = (width: number): number =>
+  Math.round(Math.max(Math.min(width, 200), Math.min(0.5 * width, 280, 0.28 * innerHeight)));
 /** Margins between the axes and the edges. */
 const MARGIN = { left: 40, top: 8, right: 14, bottom: 36 };
 /** Height of the type for which the margins are set, px; with larger type, on slides, everything is enlarged. */
@@ -60,12 +60,11 @@ export class Plot {
   #panel: PlotPanel | undefined;
   #width = 0;
   #height = 0;
-  /** The height that the style sheet leaves to the drawing. */
-  #most = Infinity;
 
   constructor() {
     this.element = make("figure", { class: "learn-panel learn-wide" }, this.#title, this.#box, this.#legend);
-    new ResizeObserver(() => this.#fit()).observe(this.element);
+    const observer = new ResizeObserver(() => this.#fit());
+    for (const part of [this.element, this.#box]) observer.observe(part);
   }
 
   show(panel: Panel): void {
@@ -81,23 +80,23 @@ export class Plot {
   }
 
   /**
-   * Redraws for another width or type size, and where the style sheet gives another height or limit. The height that follows from the drawing
-   * itself changes nothing.
+   * Redraws for another width or type size, and where the style sheet gives another height, which can be that of the box. The height that
+   * follows from the drawing itself changes nothing.
    */
   #fit(): void {
     const style = getComputedStyle(this.#drawing);
     const type = parseFloat(style.fontSize) / TYPE || 1;
     const width = Math.round(this.element.clientWidth / type);
-    const height = Math.round(parseFloat(style.getPropertyValue("--plot-height")) / type) || 0;
-    const most = parseFloat(getComputedStyle(this.#box).maxHeight) / type || Infinity;
-    if (width === 0 || (width === this.#width && height === this.#height && most === this.#most)) return;
-    [this.#width, this.#height, this.#most] = [width, height, most];
+    const given = style.getPropertyValue("--plot-height");
+    const height = Math.round((given.includes("%") ? this.#box.clientHeight : parseFloat(given)) / type) || 0;
+    if (width === 0 || (width === this.#width && height === this.#height)) return;
+    [this.#width, this.#height] = [width, height];
     if (this.#panel) this.#draw(this.#panel);
   }
 
   #draw({ series, x, y, at, domain, range }: PlotPanel): void {
     const width = this.#width || WIDTH;
-    const height = this.#height || heightOf(width, this.#most);
+    const height = this.#height || heightOf(width);
     const box = { left: MARGIN.left, top: MARGIN.top, right: width - MARGIN.right, bottom: height - MARGIN.bottom };
     this.#drawing.setAttribute("viewBox", `0 0 ${width} ${height}`);
     const every = (axis: 0 | 1) => series.flatMap(({ points }) => points.filter((_, i) => i % 2 === axis));
