@@ -107,7 +107,7 @@ test("a question on a slide takes the arrow keys only from those who tab to it",
 
 test("a guess that is compared before its question is drawn gets its answer", async ({ lab, page }) => {
   await page.emulateMedia({ reducedMotion: "reduce" });
-  await open(page, "at=relief&slides");
+  await open(page, "at=relief&stretch=0.5&slides");
   // The state that reveals the answer is the one in which the slide opens, so its drawing is known and shown at once.
   await dialog(page).evaluate((slides) => {
     slides.dispatchEvent(new KeyboardEvent("keydown", { key: "q" }));
@@ -116,6 +116,84 @@ test("a guess that is compared before its question is drawn gets its answer", as
     form?.requestSubmit();
   });
   await expect(asked(page).locator(".learn-answer")).not.toBeEmpty();
+  expect(lab.complaints).toEqual([]);
+});
+
+test("the button names what the next press brings", async ({ lab, page, say }) => {
+  await open(page, "at=grey&slides");
+  const button = dialog(page).getByRole("button", { name: / \(Q\)$/ });
+  const question = say("interface.slides.ask", "Question {number} (Q)");
+  const sentence = say("interface.slides.sentence", "Sentence (Q)");
+  await expect(button).toHaveText(question.replace("{number}", "1"));
+  await button.click();
+  await expect(button).toHaveText(say("interface.slides.exercise", "Exercise (Q)"));
+  await button.click();
+  await expect(button).toHaveText(sentence);
+  await button.click();
+  await expect(button).toHaveText(question.replace("{number}", "1"));
+  await open(page, "at=relief&slides");
+  await page.keyboard.press("q");
+  await expect(button).toHaveText(question.replace("{number}", "2"));
+  await page.keyboard.press("q");
+  await expect(button).toHaveText(sentence);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("a link begins each slide with its question, whose answer no panel shows before the guess", async ({
+  lab,
+  page,
+}) => {
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await open(page, "slides=lambert,strips&ask");
+  for (const [id, panel] of [
+    ["lambert", "law"],
+    ["strips", "map"],
+  ] as const) {
+    await expect(page.locator(`.learn-slide [data-lesson="${id}"]`)).toBeVisible();
+    await expect(page).toHaveURL(new RegExp(`at=${id}.*&slides=lambert,strips&ask$`));
+    await expect(asked(page)).toHaveCount(1);
+    await expect(dialog(page).locator(".learn-gist")).toBeHidden();
+    await settled(page);
+    await expect(dialog(page).locator(`[data-panel="${panel}"]`)).toBeAttached();
+    await expect(dialog(page).locator(`[data-panel="${panel}"]`)).toBeHidden();
+    await guess(page);
+    await expect(dialog(page).locator(`[data-panel="${panel}"]`)).toBeVisible();
+    await page.keyboard.press("q");
+    await expect(dialog(page).locator(".learn-gist")).toBeVisible();
+    await page.keyboard.press("ArrowRight");
+  }
+  // Without that part of the link, a slide begins with its sentence.
+  await open(page, "slides=lambert,strips");
+  await expect(dialog(page).locator(".learn-gist")).toBeVisible();
+  await expect(dialog(page).locator('[data-panel="law"]')).toBeVisible();
+  expect(lab.complaints).toEqual([]);
+});
+
+test("the third lesson opens with two equal surfaces, so that its figure does not answer its question", async ({
+  page,
+}) => {
+  await open(page, "at=relief");
+  await expect(control(page, "stretch")).toHaveValue("1");
+  await expect(page.locator('[data-number="paint"]')).toHaveAttribute("data-value", /^1(\.0+\d*)?$/);
+});
+
+test("a slide does not wait for the figure of the slide before", async ({ lab, page }) => {
+  // A thread that computes the pose never answers, and takes no other request either.
+  await page.addInitScript(() => {
+    const post = Worker.prototype.postMessage as (this: Worker, ...all: unknown[]) => void;
+    const stuck = new WeakSet<Worker>();
+    Worker.prototype.postMessage = function (this: Worker, ...all: unknown[]) {
+      const [request] = all as [{ lesson?: string }];
+      if (request.lesson === "pose") stuck.add(this);
+      if (!stuck.has(this)) post.apply(this, all);
+    };
+  });
+  await page.goto("./#learn&at=pose&slides");
+  await expect(page.locator('.learn-slide [data-lesson="pose"]')).toBeVisible();
+  await page.keyboard.press("ArrowRight");
+  await expect(page.locator('.learn-slide [data-lesson="loop"]')).toBeVisible();
+  await settled(page);
+  await expect(page.locator(".learn-slide .learn-blank")).toHaveCount(0);
   expect(lab.complaints).toEqual([]);
 });
 
@@ -278,14 +356,29 @@ test("slides are counted, chosen by a link in its order, and found in a list", a
   await expect(dialog(page).locator(".learn-overview")).toBeHidden();
   await page.goBack();
   await expect(page.locator('.learn-slide [data-lesson="pose"]')).toBeVisible();
-  // Escape closes the list before the slides; the button of a lesson shows all slides again.
+  // Escape closes the list before the slides. The button of a lesson shows the chosen slides again, because the lecture goes on with them.
   await count(page).click();
   await page.keyboard.press("Escape");
   await expect(dialog(page).locator(".learn-overview")).toBeHidden();
   await expect(dialog(page)).toBeVisible();
   await page.keyboard.press("Escape");
-  await page.getByRole("button", { name: say("interface.slides", "Slides") }).click();
-  await expect(count(page)).toHaveText(/^11 \/ 15/);
+  const show = page.getByRole("button", { name: say("interface.slides", "Slides") });
+  await show.click();
+  await expect(count(page)).toHaveText(/^2 \/ 3/);
+  await expect(page).toHaveURL(/&slides=grey,pose,normal$/);
+  await count(page).click();
+  await dialog(page)
+    .getByRole("button", { name: say("interface.overview.all", "All"), exact: true })
+    .click();
+  await expect(count(page)).toHaveText(/ \/ 15/);
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("Escape");
+  // A lesson that was not chosen is shown among all.
+  await open(page, "slides=grey,pose");
+  await page.keyboard.press("Escape");
+  await open(page, "at=strips");
+  await show.click();
+  await expect(count(page)).toHaveText(/^4 \/ 15/);
   await expect(page).toHaveURL(/&slides$/);
   expect(lab.complaints).toEqual([]);
 });

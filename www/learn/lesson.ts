@@ -64,6 +64,8 @@ export interface Guess {
   number?: { key: string; unit?: string; digits: number; within: number };
   /** The change of the figure that reveals the answer. */
   reveal: Try;
+  /** The panel from which the answer could be read, which a slide hides until the guess is made. */
+  covers?: string;
   answer: string;
 }
 

@@ -20,8 +20,10 @@ export interface Slide {
   title: string;
   /** The slides of the show, in their order. */
   chosen: Chosen;
-  /** The number of the lesson's questions. */
-  questions: number;
+  /** What the button for the next question says before each of the lesson's questions. */
+  questions: readonly string[];
+  /** Whether the slide begins with its first question. */
+  asksFirst: boolean;
   /** Puts a question in the place of the lesson's sentence; with none, the sentence returns. */
   ask(index: number | undefined): void;
 }
@@ -35,11 +37,7 @@ export class Slides {
   readonly element: HTMLDialogElement;
   readonly #holder = make("div", { class: "learn-slide" });
   readonly #turns: readonly { by: 1 | -1; button: HTMLButtonElement }[];
-  readonly #question = make(
-    "button",
-    { type: "button", "aria-pressed": "false" },
-    phrase("slides.ask", "Question (Q)"),
-  );
+  readonly #question = make("button", { type: "button" });
   readonly #overview: Overview;
   readonly #hooks: SlidesHooks;
   readonly #answers: Answers;
@@ -104,8 +102,7 @@ export class Slides {
     const isAnother = this.#slide !== slide;
     this.#slide = slide;
     this.element.setAttribute("aria-label", phrase("slides.slide", "Slide: {title}", { title: slide.title }));
-    this.#question.hidden = slide.questions === 0;
-    this.#put(undefined);
+    this.#put(slide.asksFirst ? 0 : undefined);
     this.count(slide.chosen);
     if (!isAnother && slide.article.parentElement === this.#holder) return;
     this.#holder.replaceChildren(slide.article);
@@ -133,9 +130,13 @@ export class Slides {
   }
 
   /** The next question of the slide; after the last one, none. */
-  #ask(): void {
+  get #next(): number | undefined {
     const next = (this.#asked ?? -1) + 1;
-    this.#put(next < (this.#slide?.questions ?? 0) ? next : undefined);
+    return next < (this.#slide?.questions.length ?? 0) ? next : undefined;
+  }
+
+  #ask(): void {
+    this.#put(this.#next);
     const field = this.#holder.querySelector<HTMLInputElement>(".learn-guess[data-asked] input[type=number]");
     if (field) field.focus({ preventScroll: true });
     else this.#focus();
@@ -143,7 +144,9 @@ export class Slides {
 
   #put(index: number | undefined): void {
     this.#asked = index;
-    this.#question.setAttribute("aria-pressed", String(index !== undefined));
+    const next = this.#next;
+    const sentence = phrase("slides.sentence", "Sentence (Q)");
+    this.#question.textContent = (next === undefined ? undefined : this.#slide?.questions[next]) ?? sentence;
     this.#slide?.ask(index);
   }
 

@@ -125,6 +125,7 @@ export const lambert: Lesson = {
       at: { level: 0.95 },
       number: { key: "angle", unit: "°", digits: 0, within: 5 },
       reveal: { sweep: { key: "level", to: 0.5 } },
+      covers: "law",
       answer: "At 60°, because the cosine of 60° is one half. At 45° the intensity is still 0.71.",
     },
   ],
