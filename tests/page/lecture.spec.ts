@@ -470,6 +470,20 @@ test("plots of slides are legible: 200 px wide at least, and pictures 128 px", L
   }
 });
 
+test("a slide lists the symbols of its formula if the pictures stay large", async ({ page }) => {
+  await page.setViewportSize({ width: 1280, height: 720 });
+  const symbols = dialog(page).locator(".learn-symbols");
+  for (const id of ["normal", "lambert", "relief", "grey", "colours", "surface"]) {
+    await open(page, `at=${id}&slides`);
+    await expect(symbols, id).toBeVisible();
+  }
+  await page.keyboard.press("q");
+  await expect(symbols).toBeHidden();
+  // Eight symbols would take three lines from four pictures.
+  await open(page, "at=strips&slides");
+  await expect(symbols).toBeHidden();
+});
+
 test("pictures of slides take the room that is free", LONG, async ({ page }) => {
   for (const [width, height] of [
     [1280, 720],

@@ -16,7 +16,7 @@ const MARGIN = { left: 22, top: 8, right: 14, bottom: 36 };
 const CHARACTER = 7.5;
 /** Distances of round numbers on an axis, and on one of angles. */
 const ROUND = [10, 5, 2, 1, 0.5];
-const ANGLES = [90, 60, 45, 30, 15, 10, 5];
+const ANGLES = [90, 60, 30, 15, 10, 5];
 /** The smallest range of an axis of angles that has such ticks, degrees. */
 const LEAST_ANGLES = 60;
 /** Height of the type for which the margins are set, px; with larger type, on slides, everything is enlarged. */
@@ -40,9 +40,10 @@ function spanOf(values: number[], range?: readonly [number, number]): Span {
 
 /** Round numbers within a range, about as many as requested and at least two, because a single one gives no scale. */
 function ticks({ least, most }: Span, count: number, name: string): number[] {
-  const rough = (most - least) / count;
+  const hasAngles = name.endsWith("°") && most - least >= LEAST_ANGLES;
+  const rough = (most - least) / (hasAngles ? 2 * count : count);
   const power = 10 ** Math.floor(Math.log10(rough));
-  const steps = name.endsWith("°") && most - least >= LEAST_ANGLES ? ANGLES : ROUND.map((each) => each * power);
+  const steps = hasAngles ? ANGLES : ROUND.map((each) => each * power);
   const within = (step: number): number[] => {
     const first = Math.ceil(least / step - 1e-9);
     return Array.from({ length: Math.floor(most / step + 1e-9) - first + 1 }, (_, i) =>

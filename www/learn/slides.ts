@@ -7,6 +7,8 @@ import type { Chosen } from "./chosen";
 import { Overview, type OverviewHooks } from "./overview";
 import type { LessonId } from "./protocol";
 
+/** The least height of a picture's frame below a list of symbols, as a share of the slide's. Titles and legends will take a part of it. */
+const LEAST_FRAME = 0.34;
 /** Elements that use the arrow keys themselves. */
 const MOVED_BY_ARROWS = "input:not([type=checkbox]), select, textarea";
 /** Elements in which letters choose an option. A field for a number takes no letter that is a command. */
@@ -68,6 +70,7 @@ export class Slides {
     // After a typed guess the keys are commands again.
     this.element.addEventListener("submit", () => this.#focus());
     this.element.addEventListener("click", () => this.#blank(false));
+    new ResizeObserver(() => this.#explain()).observe(this.#holder);
     this.element.addEventListener("close", () => {
       this.#blank(false);
       if (document.fullscreenElement) void document.exitFullscreen();
@@ -102,11 +105,13 @@ export class Slides {
     const isAnother = this.#slide !== slide;
     this.#slide = slide;
     this.element.setAttribute("aria-label", phrase("slides.slide", "Slide: {title}", { title: slide.title }));
-    this.#put(slide.asksFirst ? 0 : undefined);
+    this.#put(undefined);
     this.count(slide.chosen);
     if (!isAnother && slide.article.parentElement === this.#holder) return;
     this.#holder.replaceChildren(slide.article);
     this.#holder.scrollTop = 0;
+    this.#explain();
+    if (slide.asksFirst) this.#put(0);
     // A removed control loses the focus, and then the keys would have no target.
     this.#focus();
   }
@@ -148,6 +153,13 @@ export class Slides {
     const sentence = phrase("slides.sentence", "Sentence (Q)");
     this.#question.textContent = (next === undefined ? undefined : this.#slide?.questions[next]) ?? sentence;
     this.#slide?.ask(index);
+  }
+
+  /** Lists the symbols of the formula if their lines leave enough height to the pictures. */
+  #explain(): void {
+    this.#holder.removeAttribute("data-terse");
+    const { clientHeight = 0 } = this.#holder.querySelector(".learn-place") ?? {};
+    this.#holder.toggleAttribute("data-terse", clientHeight < LEAST_FRAME * this.#holder.clientHeight);
   }
 
   /** At an exercise, opens its answer or closes it; elsewhere, shows all answers or hides them. */
