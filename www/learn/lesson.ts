@@ -1,6 +1,7 @@
 /** The parts of a lesson. */
 
 import { decimals, withUnit } from "./digits";
+import type { SymbolName } from "./maths";
 import type { Ink, LessonId, Values } from "./protocol";
 import type { References } from "./references";
 
@@ -77,6 +78,8 @@ export interface Lesson {
   formula(): Element;
   /** The formula in words. */
   formulaWords: string;
+  /** Symbols of the text that the formula does not have. */
+  symbols?: readonly SymbolName[];
   text: readonly string[];
   /** The stages of a loop, drawn in a row that leads back to its beginning. */
   stages?: readonly string[];

@@ -4,6 +4,7 @@ import "../style/learn.css";
 import "../style/learn-prose.css";
 import "../style/embed.css";
 import "../style/learn-figure.css";
+import "../style/learn-marks.css";
 import "../style/learn-blank.css";
 import "../style/learn-print.css";
 import "../style/learn-slides.css";
