@@ -246,6 +246,7 @@ const failure = [
   claim("failure", "Without 90 % the status is [converged|ambiguous|lost]", () => wordOf("failure&amount=95")),
   claim("failure", "with a sigma of [#]°", () => numberOf("failure&amount=95", "sigma")),
   claim("failure", "instead of the [#]° of the whole map", () => numberOf("failure", "sigma")),
+  claim("failure", "within a quarter turn has a sigma of [#]°", () => 90 / Math.sqrt(12)),
   claim("failure", "Errors of two or three sigmas are [rare|usual]", () =>
     [0, 25, 50, 75].every((amount) => {
       const { error, sigma } = figure(`failure&amount=${amount}`);

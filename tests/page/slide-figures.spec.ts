@@ -91,6 +91,18 @@ test("plots of slides are legible: 200 px wide at least, and pictures 128 px", L
   }
 });
 
+test("on a phone the formula of a slide stands below its sentence, which has the whole width", async ({ page }) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  for (const id of ["normal", "strips", "colours"]) {
+    await open(page, `at=${id}&slides`);
+    const boxOf = async (part: string) =>
+      (await page.locator(`.learn-slide ${part}`).boundingBox()) ?? { y: 0, width: 0, height: 0 };
+    const [sentence, formula] = [await boxOf(".learn-gist"), await boxOf(".learn-formula")];
+    expect(sentence.width, id).toBeGreaterThan(300);
+    expect(formula.y, id).toBeGreaterThanOrEqual(sentence.y + sentence.height);
+  }
+});
+
 test("a slide lists the symbols of its formula if the pictures stay large", async ({ page }) => {
   await page.setViewportSize({ width: 1280, height: 720 });
   const symbols = page.locator(".learn-slide .learn-symbols");
