@@ -118,6 +118,13 @@ function meanUnder(weight) {
 }
 
 const loop = [
+  claim("loop", "the error of the pose falls to [#]° in the first pass", () =>
+    numberOf("loop&offset=12&pass=1", "pose"),
+  ),
+  claim("loop", "in the first pass and to [#]° in six", () => numberOf("loop&offset=12&pass=6", "pose")),
+  claim("loop", "and the ring moves [to|away from] the cross", () =>
+    change(numberOf("loop&offset=12&pass=6", "off"), numberOf("loop&offset=12", "off"), ["to", "away from"]),
+  ),
   claim("loop", "A small {lambda} leaves [several minima|one minimum]", () =>
     [0, 20].every((offset) => numberOf(`loop&offset=${offset}&weight=-3`, "minima") > 1)
       ? "several minima"

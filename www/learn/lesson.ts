@@ -48,6 +48,8 @@ export interface Readout {
 /** The effect of a button. It sets controls at once and then moves one slider slowly, so that the change can be watched. */
 export interface Try {
   set?: Values;
+  /** A slider that each press moves on by one of its steps, up to its end. */
+  step?: string;
   sweep?: { key: string; to: number };
 }
 
