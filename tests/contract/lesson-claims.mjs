@@ -118,6 +118,13 @@ function meanUnder(weight) {
 }
 
 const loop = [
+  claim("loop", "the error of the pose falls to [#]° in the first pass", () =>
+    numberOf("loop&offset=12&pass=1", "pose"),
+  ),
+  claim("loop", "in the first pass and to [#]° in six", () => numberOf("loop&offset=12&pass=6", "pose")),
+  claim("loop", "and the ring moves [to|away from] the cross", () =>
+    change(numberOf("loop&offset=12&pass=6", "off"), numberOf("loop&offset=12", "off"), ["to", "away from"]),
+  ),
   claim("loop", "A small {lambda} leaves [several minima|one minimum]", () =>
     [0, 20].every((offset) => numberOf(`loop&offset=${offset}&weight=-3`, "minima") > 1)
       ? "several minima"
@@ -240,12 +247,13 @@ const failure = [
   claim("failure", "At 100 % the rotation [cannot|can] be determined, and the report names the axis", () =>
     /rotation about z is not observable/.test(statusOf("failure&case=symmetry&amount=100")) ? "cannot" : "can",
   ),
-  claim("failure", "At 5 % of its width no pose fits, and the status is [lost|ambiguous|converged]", () =>
+  claim("failure", "Without 95 % of its width no pose fits, and the status is [lost|ambiguous|converged]", () =>
     wordOf("failure&amount=100"),
   ),
-  claim("failure", "Widen it to 10 %: now the status is [converged|ambiguous|lost]", () => wordOf("failure&amount=95")),
+  claim("failure", "Without 90 % the status is [converged|ambiguous|lost]", () => wordOf("failure&amount=95")),
   claim("failure", "with a sigma of [#]°", () => numberOf("failure&amount=95", "sigma")),
-  claim("failure", "instead of the [#]° at full width", () => numberOf("failure", "sigma")),
+  claim("failure", "instead of the [#]° of the whole map", () => numberOf("failure", "sigma")),
+  claim("failure", "within a quarter turn has a sigma of [#]°", () => 90 / Math.sqrt(12)),
   claim("failure", "Errors of two or three sigmas are [rare|usual]", () =>
     [0, 25, 50, 75].every((amount) => {
       const { error, sigma } = figure(`failure&amount=${amount}`);

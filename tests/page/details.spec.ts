@@ -108,7 +108,7 @@ test("each case of the last lesson names what its slider changes", async ({ page
   await open(page, "at=failure&amount=100");
   for (const [value, label, reading] of [
     ["symmetry", "Part of the nose removed", "100 %"],
-    ["overlap", "Width of the depth map", "%"],
+    ["overlap", "Part of the depth map cut away", "95 %"],
     ["texture", "Strength of the print", "100 %"],
     ["turn", "Rotation between the views", "°"],
   ] as const) {

@@ -27,6 +27,17 @@ test("8: the map has the curve of each colour, and they meet at the true normal"
   expect(lab.complaints).toEqual([]);
 });
 
+test("2: rays show the cone of the normals that have the chosen intensity", async ({ lab, page }) => {
+  await open(page, "at=lambert");
+  const rays = page.locator('[data-panel="ball"] .fine.learn-ink-normal');
+  await expect(rays).toHaveCount(1);
+  const path = (await rays.getAttribute("d")) ?? "";
+  expect(path.match(/M50.00 50.00L/g)?.length).toBe(16);
+  await slide(page, "level", 0.9);
+  await expect.poll(() => rays.getAttribute("d")).not.toBe(path);
+  expect(lab.complaints).toEqual([]);
+});
+
 /** Messages to the threads, held back until they are let go. */
 async function holdRequests(page: Page): Promise<{ hold(): Promise<void>; release(): Promise<void> }> {
   await page.addInitScript(() => {
@@ -96,7 +107,9 @@ test(
         unnamed.filter((letter) => !PLAIN.has(letter) && letter !== "j"),
         id,
       ).toEqual([]);
-      expect(listed.filter((name) => name !== "j").sort(), id).toEqual([...inFormula].sort());
+      // The text of lesson 6 names the whole light, of which its formula has the parts.
+      const ofText = id === "pixel" ? ["L"] : [];
+      expect(listed.filter((name) => name !== "j").sort(), id).toEqual([...inFormula, ...ofText].sort());
       if (unnamed.includes("j")) expect(listed, id).toContain("j");
       for (const item of await page.locator(".learn-symbols li").all())
         expect((await item.textContent())?.length).toBeGreaterThan(5);

@@ -125,6 +125,21 @@ test("2: a drag on the face moves the lamp, and all isophotes with it", async ({
   expect(lab.complaints).toEqual([]);
 });
 
+test("12: each press runs one pass of the loop, which brings the pose nearer to the truth", async ({ lab, page }) => {
+  await open(page, "at=loop");
+  const next = page.locator(".learn-try").first();
+  const errors = [await number(page, "pose")];
+  for (let pass = 1; pass <= 3; pass++) {
+    await next.click();
+    await expect(input(page, "pass")).toHaveValue(String(pass));
+    errors.push(await number(page, "pose"));
+  }
+  expect(errors[0]).toBeCloseTo(12, 0);
+  expect(errors).toEqual([...errors].sort((a, b) => b - a));
+  expect(new Set(errors).size).toBe(4);
+  expect(lab.complaints).toEqual([]);
+});
+
 test("3, 4, 5: reliefs share a picture, strips follow a face, orders add up", async ({ lab, page }) => {
   await open(page, "at=relief&stretch=0.3&slope=0.2");
   expect(await number(page, "difference")).toBeLessThan(1e-4);

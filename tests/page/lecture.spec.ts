@@ -1,7 +1,7 @@
-/** A lecture with the slides: questions to the class, answers that a link hides, chosen slides, and figures that are there at once. */
+/** A lecture with the slides: questions to the class, answers that a link hides, and chosen slides. */
 
 import type { Page } from "@playwright/test";
-import { LESSONS, control, figure, open, settled, slide } from "./figure";
+import { LESSONS, control, open, settled, slide } from "./figure";
 import { LONG, expect, test } from "./lab";
 import { type SlideText, textsIn, tooSmall } from "./slide-text";
 
@@ -28,12 +28,14 @@ async function faults(page: Page): Promise<string[]> {
   const card = await page.locator(".learn-slide .learn-figure").boundingBox();
   const width = page.viewportSize()?.width ?? 0;
   const texts = (await textsIn(page, ".learn-slide")).filter(({ drawing }) => drawing === undefined);
+  const beside = ({ isInFigure, right }: SlideText) => isInFigure && card !== null && right > card.x + card.width;
   const below = ({ isInFigure, bottom }: SlideText) => isInFigure && card !== null && bottom > card.y + card.height;
   return [
     ...(over > 0 ? [`${over} px below the slide`] : []),
     ...tooSmall(texts),
     ...texts.filter(below).map(({ words }) => `below the card: ${words}`),
     ...texts.filter(({ right }) => right > width).map(({ words }) => `beyond the edge: ${words}`),
+    ...texts.filter(beside).map(({ words }) => `beside the card: ${words}`),
   ];
 }
 
@@ -63,7 +65,8 @@ test("each question fits its slide, and its answer comes after the guess", LONG,
       await settled(page);
       expect(await faults(page), `${id}, exercise ${at + 1}`).toEqual([]);
       await exercise(page).locator("summary").click();
-      await expect(dialog(page).locator(".learn-figure")).toBeHidden();
+      // The answer speaks about the figure, so both are seen.
+      await expect(dialog(page).locator(".learn-figure .learn-canvas").first()).toBeVisible();
       expect(await faults(page), `${id}, answer of exercise ${at + 1}`).toEqual([]);
     }
     await page.keyboard.press("q");
@@ -104,7 +107,7 @@ test("a question on a slide takes the arrow keys only from those who tab to it",
 
 test("a guess that is compared before its question is drawn gets its answer", async ({ lab, page }) => {
   await page.emulateMedia({ reducedMotion: "reduce" });
-  await open(page, "at=relief&slides");
+  await open(page, "at=relief&stretch=0.5&slides");
   // The state that reveals the answer is the one in which the slide opens, so its drawing is known and shown at once.
   await dialog(page).evaluate((slides) => {
     slides.dispatchEvent(new KeyboardEvent("keydown", { key: "q" }));
@@ -114,6 +117,64 @@ test("a guess that is compared before its question is drawn gets its answer", as
   });
   await expect(asked(page).locator(".learn-answer")).not.toBeEmpty();
   expect(lab.complaints).toEqual([]);
+});
+
+test("the button names what the next press brings", async ({ lab, page, say }) => {
+  await open(page, "at=grey&slides");
+  const button = dialog(page).getByRole("button", { name: / \(Q\)$/ });
+  const question = say("interface.slides.ask", "Question {number} (Q)");
+  const sentence = say("interface.slides.sentence", "Sentence (Q)");
+  await expect(button).toHaveText(question.replace("{number}", "1"));
+  await button.click();
+  await expect(button).toHaveText(say("interface.slides.exercise", "Exercise (Q)"));
+  await button.click();
+  await expect(button).toHaveText(sentence);
+  await button.click();
+  await expect(button).toHaveText(question.replace("{number}", "1"));
+  await open(page, "at=relief&slides");
+  await page.keyboard.press("q");
+  await expect(button).toHaveText(question.replace("{number}", "2"));
+  await page.keyboard.press("q");
+  await expect(button).toHaveText(sentence);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("a link begins each slide with its question, whose answer no panel shows before the guess", async ({
+  lab,
+  page,
+}) => {
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await open(page, "slides=lambert,strips&ask");
+  for (const [id, panel] of [
+    ["lambert", "law"],
+    ["strips", "map"],
+  ] as const) {
+    await expect(page.locator(`.learn-slide [data-lesson="${id}"]`)).toBeVisible();
+    await expect(page).toHaveURL(new RegExp(`at=${id}.*&slides=lambert,strips&ask$`));
+    await expect(asked(page)).toHaveCount(1);
+    await expect(dialog(page).locator(".learn-gist")).toBeHidden();
+    await settled(page);
+    await expect(dialog(page).locator(`[data-panel="${panel}"]`)).toBeAttached();
+    await expect(dialog(page).locator(`[data-panel="${panel}"]`)).toBeHidden();
+    await guess(page);
+    await expect(dialog(page).locator(`[data-panel="${panel}"]`)).toBeVisible();
+    await page.keyboard.press("q");
+    await expect(dialog(page).locator(".learn-gist")).toBeVisible();
+    await page.keyboard.press("ArrowRight");
+  }
+  // Without that part of the link, a slide begins with its sentence.
+  await open(page, "slides=lambert,strips");
+  await expect(dialog(page).locator(".learn-gist")).toBeVisible();
+  await expect(dialog(page).locator('[data-panel="law"]')).toBeVisible();
+  expect(lab.complaints).toEqual([]);
+});
+
+test("the third lesson opens with two equal surfaces, so that its figure does not answer its question", async ({
+  page,
+}) => {
+  await open(page, "at=relief");
+  await expect(control(page, "stretch")).toHaveValue("1");
+  await expect(page.locator('[data-number="paint"]')).toHaveAttribute("data-value", /^1(\.0+\d*)?$/);
 });
 
 test("a link followed while the slides close opens its lesson", async ({ lab, page }) => {
@@ -205,6 +266,17 @@ test(
   },
 );
 
+test("a button above the exercises hides answers once one of them is open", async ({ page, say }) => {
+  await page.goto("./#learn&at=exercises");
+  const exercises = page.locator(".learn-exercises");
+  const hide = exercises.getByRole("button", { name: say("interface.answers.hide", "Hide answers") });
+  await expect(exercises.locator("summary").first()).toBeVisible();
+  await expect(hide).toBeHidden();
+  await exercises.locator("summary").first().click();
+  await hide.click();
+  await expect(page).toHaveURL(/#learn&at=exercises&answers=hidden/);
+});
+
 test("without the link there is no such button at a lesson, and answers are shown", async ({ page, say }) => {
   await open(page, "at=relief");
   await expect(page.getByRole("button", { name: say("interface.answers.hide", "Hide answers") })).toBeHidden();
@@ -275,132 +347,31 @@ test("slides are counted, chosen by a link in its order, and found in a list", a
   await expect(dialog(page).locator(".learn-overview")).toBeHidden();
   await page.goBack();
   await expect(page.locator('.learn-slide [data-lesson="pose"]')).toBeVisible();
-  // Escape closes the list before the slides; the button of a lesson shows all slides again.
+  // Escape closes the list before the slides. The button of a lesson shows the chosen slides again, because the lecture goes on with them.
   await count(page).click();
   await page.keyboard.press("Escape");
   await expect(dialog(page).locator(".learn-overview")).toBeHidden();
   await expect(dialog(page)).toBeVisible();
   await page.keyboard.press("Escape");
-  await page.getByRole("button", { name: say("interface.slides", "Slides") }).click();
-  await expect(count(page)).toHaveText(/^11 \/ 15/);
+  const show = page.getByRole("button", { name: say("interface.slides", "Slides") });
+  await show.click();
+  await expect(count(page)).toHaveText(/^2 \/ 3/);
+  await expect(page).toHaveURL(/&slides=grey,pose,normal$/);
+  await count(page).click();
+  await dialog(page)
+    .getByRole("button", { name: say("interface.overview.all", "All"), exact: true })
+    .click();
+  await expect(count(page)).toHaveText(/ \/ 15/);
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("Escape");
+  // A lesson that was not chosen is shown among all.
+  await open(page, "slides=grey,pose");
+  await page.keyboard.press("Escape");
+  await open(page, "at=strips");
+  await show.click();
+  await expect(count(page)).toHaveText(/^4 \/ 15/);
   await expect(page).toHaveURL(/&slides$/);
   expect(lab.complaints).toEqual([]);
-});
-
-/** Holds back every message to a thread of Learn until `go` is called, and counts complete figures. */
-async function watchThreads(page: Page, isHeld: boolean): Promise<void> {
-  await page.addInitScript((isHeld) => {
-    const state = { done: 0, held: isHeld ? ([] as (() => void)[]) : undefined };
-    Object.assign(window, {
-      threads: state,
-      go: () => {
-        const held = state.held ?? [];
-        state.held = undefined;
-        for (const pass of held) pass();
-      },
-    });
-    const Own = Worker;
-    window.Worker = class extends Own {
-      constructor(...all: ConstructorParameters<typeof Worker>) {
-        super(...all);
-        this.addEventListener("message", ({ data }: MessageEvent<{ done?: boolean }>) => {
-          if (data.done) state.done++;
-        });
-      }
-      override postMessage(message: unknown): void {
-        const pass = () => super.postMessage(message);
-        if (state.held) state.held.push(pass);
-        else pass();
-      }
-    };
-  }, isHeld);
-}
-
-const boxes = (page: Page): Promise<number[]> =>
-  page
-    .locator(".learn-slide :is(h2, .learn-gist, .learn-formula, .learn-figure, .learn-controls, .learn-numbers)")
-    .evaluateAll((all) =>
-      all.flatMap((each) => {
-        const { left, top, width, height } = each.getBoundingClientRect();
-        return [left, top, width, height].map(Math.round);
-      }),
-    );
-
-test("a slide has its text and the frame of its figure before anything is computed", LONG, async ({ lab, page }) => {
-  await page.setViewportSize({ width: 1280, height: 720 });
-  await watchThreads(page, true);
-  for (const id of LESSONS) {
-    await page.goto("about:blank");
-    await page.goto(`./#learn&at=${id}&slides`);
-    await expect(page.locator(".learn-slide .learn-blank").first()).toBeVisible();
-    await expect(page.locator(".learn-computing").first()).toBeVisible();
-    const [before, panels] = [await boxes(page), await page.locator(".learn-blank").count()];
-    await page.evaluate(() => (window as unknown as { go(): void }).go());
-    await settled(page);
-    await expect(page.locator(".learn-blank")).toHaveCount(0);
-    expect(await page.locator(".learn-slide .learn-panel").count(), id).toBe(panels);
-    expect(await boxes(page), id).toEqual(before);
-  }
-  expect(lab.complaints).toEqual([]);
-});
-
-test("the next slide's figure is computed in advance, and is there at once", async ({ lab, page }) => {
-  await watchThreads(page, false);
-  const done = () => page.evaluate(() => (window as unknown as { threads: { done: number } }).threads.done);
-  await open(page, "at=relief&slides");
-  await expect.poll(done).toBe(2);
-  const isBusy = await page.locator(".learn-slide").evaluate((holder) => {
-    const key = new KeyboardEvent("keydown", { key: "ArrowRight", bubbles: true });
-    holder.querySelector("h2")?.dispatchEvent(key);
-    return [holder.querySelector("[data-lesson]")?.getAttribute("data-lesson"), holder.querySelector(".learn-blank")];
-  });
-  expect(isBusy).toEqual(["strips", null]);
-  await expect(figure(page)).toHaveAttribute("aria-busy", "false");
-  // A drag changes the figure as on any slide.
-  await slide(page, "lx", 0.1);
-  await settled(page);
-  expect(lab.complaints).toEqual([]);
-});
-
-test("plots of slides are legible: 200 px wide at least, and pictures 128 px", LONG, async ({ page }) => {
-  await page.setViewportSize({ width: 1280, height: 720 });
-  for (const id of LESSONS) {
-    await open(page, `at=${id}&slides`);
-    await expect(figure(page)).toHaveAttribute("aria-busy", "false");
-    const widths = (selector: string) =>
-      page.locator(selector).evaluateAll((all) => all.map((each) => each.getBoundingClientRect().width));
-    for (const width of await widths(".learn-slide .learn-plot")) expect(width, id).toBeGreaterThanOrEqual(200);
-    for (const width of await widths(".learn-slide .learn-canvas")) expect(width, id).toBeGreaterThanOrEqual(128);
-  }
-});
-
-/** Contrast of two colours by the definition of WCAG 2. */
-function contrast(a: string, b: string): number {
-  const luminance = (colour: string): number => {
-    const [red = 0, green = 0, blue = 0] = (colour.match(/[\d.]+/g) ?? []).map(Number).map((value) => {
-      const share = value / 255;
-      return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
-    });
-    return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
-  };
-  const [dark = 0, light = 0] = [luminance(a), luminance(b)].sort((x, y) => x - y);
-  return (light + 0.05) / (dark + 0.05);
-}
-
-test("strips and isophotes stand out from white and from black parts of a picture", async ({ page }) => {
-  for (const colorScheme of ["light", "dark"] as const) {
-    await page.emulateMedia({ colorScheme });
-    for (const id of ["lambert", "strips"]) {
-      await open(page, `at=${id}`);
-      const strokes = await page
-        .locator(".learn-mark.fine")
-        .evaluateAll((all) => [...new Set(all.map((each) => getComputedStyle(each).stroke))]);
-      expect(strokes.length, id).toBeGreaterThan(0);
-      for (const stroke of strokes)
-        for (const ground of ["rgb(255, 255, 255)", "rgb(0, 0, 0)"])
-          expect(contrast(stroke, ground), `${id}, ${colorScheme}: ${stroke}`).toBeGreaterThanOrEqual(3);
-    }
-  }
 });
 
 test("the page for teachers is linked from the lessons and from the help", async ({ page, say }) => {
@@ -412,29 +383,4 @@ test("the page for teachers is linked from the lessons and from the help", async
   const help = page.locator("#help").getByRole("link", { name: say("interface.teachers", "For teachers") });
   await expect(help).toBeVisible();
   await expect(help).toHaveAttribute("href", teachers);
-});
-
-test("formulas have no sign that only a mathematics font has", LONG, async ({ page }) => {
-  for (const id of LESSONS) {
-    await open(page, `at=${id}`);
-    const found = await page.locator(".learn-text math").evaluateAll((all) => {
-      // A browser writes letters of the mathematical block of Unicode for "math-auto".
-      const others = [...all]
-        .flatMap((each) => [...each.querySelectorAll("mi")])
-        .filter((each) => {
-          const isLetter = (each.textContent ?? "").length === 1;
-          return isLetter && getComputedStyle(each).textTransform !== "none";
-        });
-      const raised = [...all]
-        .flatMap((each) => [...each.querySelectorAll("msup")])
-        .filter((each) => {
-          return each.lastElementChild?.textContent === "′";
-        });
-      const signs = [...all].map((each) => each.textContent ?? "").join("");
-      return { others: others.length, raised: raised.length, signs: [...new Set(signs)].join("") };
-    });
-    // Latin and Greek letters, and the signs that Liberation and DejaVu have alike.
-    expect(found.signs, id).toMatch(/^[ -~À-ÿΑ-ω·′−∑∂≈→\s]*$/);
-    expect([found.others, found.raised], id).toEqual([0, 0]);
-  }
 });

@@ -64,6 +64,43 @@ test("text of a slide can be read from the last row, and no axis label is cut", 
   expect(lab.complaints).toEqual([]);
 });
 
+/** Pairs of texts of a plot that overlap, and texts above or below their plot. */
+const struck = (page: Page): Promise<string[]> =>
+  page.locator(".learn-plot").evaluateAll((plots) =>
+    plots.flatMap((plot) => {
+      const edges = plot.getBoundingClientRect();
+      const texts = [...plot.querySelectorAll("text")].map((text) => {
+        const { left, right, top, bottom } = text.getBoundingClientRect();
+        return { words: text.textContent ?? "", left, right, top, bottom };
+      });
+      const out = texts.filter(({ top, bottom }) => top < edges.top - 2 || bottom > edges.bottom + 2);
+      const pairs = texts.flatMap((a, i) => texts.slice(i + 1).map((b) => [a, b] as const));
+      const overlaps = pairs.filter(
+        ([a, b]) => a.left < b.right && b.left < a.right && a.top + 3 < b.bottom && b.top + 3 < a.bottom,
+      );
+      return [...out.map(({ words }) => words), ...overlaps.map(([a, b]) => `${a.words} on ${b.words}`)];
+    }),
+  );
+
+test("no text of a plot lies on another, beside a lesson or on its slide", LONG, async ({ lab, page }) => {
+  await page.setViewportSize({ width: 1280, height: 720 });
+  for (const id of LESSONS)
+    for (const state of [`at=${id}`, `at=${id}&slides`]) {
+      await open(page, state);
+      await expect(page.locator(".learn-figure")).toHaveAttribute("aria-busy", "false");
+      await expect.poll(() => struck(page), { message: state }).toEqual([]);
+    }
+  expect(lab.complaints).toEqual([]);
+});
+
+test("an axis of angles has ticks at parts of a right angle", async ({ page }) => {
+  await open(page, "at=lambert");
+  const ticks = page.locator('[data-panel="law"] .tick[text-anchor="middle"]');
+  const angles = (await ticks.allTextContents()).map(Number);
+  expect(angles).toContain(60);
+  expect(angles.filter((angle) => angle % 15 !== 0)).toEqual([]);
+});
+
 test("before the first slide and after the last there is none, and the buttons say so", async ({ page, say }) => {
   await page.goto("./#learn&at=normal&slides");
   const previous = page.getByRole("button", { name: say("interface.slides.previous", "Previous lesson") });

@@ -3,6 +3,7 @@
 import words from "../style/learn.css?inline";
 import waiting from "../style/learn-blank.css?inline";
 import parts from "../style/learn-figure.css?inline";
+import marks from "../style/learn-marks.css?inline";
 import tokens from "../style/tokens.css?inline";
 import own from "./figure.css?inline";
 
@@ -14,7 +15,7 @@ let sheet: CSSStyleSheet | undefined;
 export function styled(root: ShadowRoot): void {
   if (!sheet) {
     sheet = new CSSStyleSheet();
-    sheet.replaceSync([tokens, words, parts, waiting, own].map(inShadow).join("\n"));
+    sheet.replaceSync([tokens, words, parts, marks, waiting, own].map(inShadow).join("\n"));
   }
   root.adoptedStyleSheets = [sheet];
 }

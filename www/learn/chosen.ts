@@ -13,9 +13,9 @@ export function chosenBy(names: string): Chosen {
   return found.length > 0 ? [...new Set(found)] : all();
 }
 
-/** The part of an address that brings these slides. */
-export const slidesInAddress = (chosen: Chosen): string =>
-  chosen.join() === all().join() ? "&slides" : `&slides=${chosen.join()}`;
+/** The part of an address that brings these slides, which can begin with their questions. */
+export const slidesInAddress = (chosen: Chosen, asksFirst: boolean): string =>
+  (chosen.join() === all().join() ? "&slides" : `&slides=${chosen.join()}`) + (asksFirst ? "&ask" : "");
 
 /** All lessons to choose from: in their own order, unless the chosen ones have another, which then come first. */
 export function offered(chosen: Chosen): Chosen {

@@ -2,6 +2,7 @@
 
 import { freshId, ink, make } from "../dom";
 import { phrase } from "../words";
+import { placed } from "./frames";
 import type { CloudPanel, Panel } from "./protocol";
 
 const SIDE = 320;
@@ -33,7 +34,7 @@ export class Cloud {
       "figure",
       { class: "learn-panel" },
       this.#title,
-      make("div", { class: "learn-canvas plain learn-turned" }, this.#canvas),
+      placed(make("div", { class: "learn-canvas plain learn-turned" }, this.#canvas)),
       make("div", { class: "learn-notes" }, turn, this.#legend),
     );
   }

@@ -2,7 +2,7 @@
 
 import { make } from "../dom";
 import { Cloud } from "./cloud";
-import { blank } from "./frames";
+import { blank, placed } from "./frames";
 import type { Drawing, ImagePanel, Mark, Panel } from "./protocol";
 import { Plot } from "./plot";
 import { svg } from "./svg";
@@ -37,21 +37,12 @@ export class Figure {
   /** Shows empty panels until the first drawing arrives, or none if it will not arrive. */
   outline(kinds: readonly Panel["kind"][]): void {
     if (this.#widgets.size > 0) return;
-    this.#count(kinds);
     this.element.replaceChildren(...kinds.map(blank));
-  }
-
-  /** The style sheet of the slides divides the width by these. */
-  #count(kinds: readonly Panel["kind"][]): void {
-    const plots = kinds.filter((kind) => kind === "plot").length;
-    this.element.style.setProperty("--plots", String(plots));
-    this.element.style.setProperty("--pictures", String(kinds.length - plots));
   }
 
   show({ panels }: Drawing): void {
     this.element.setAttribute("aria-busy", "false");
     if (this.#widgets.size === 0) this.element.replaceChildren();
-    this.#count(panels.map(({ kind }) => kind));
     const keys = new Set(panels.map(({ key }) => key));
     for (const [key, { element }] of this.#widgets) {
       if (keys.has(key)) continue;
@@ -96,7 +87,7 @@ class Picture implements Widget {
   constructor(key: string, onDrag: OnDrag | undefined, follows: boolean) {
     const box = make("div", { class: "learn-canvas" }, this.#canvas, this.#marks);
     if (onDrag) draggable(box, (x, y) => onDrag(key, x, y), follows);
-    this.element = make("figure", { class: "learn-panel", "data-panel": key }, this.#title, box, this.#legend);
+    this.element = make("figure", { class: "learn-panel", "data-panel": key }, this.#title, placed(box), this.#legend);
   }
 
   show(panel: Panel): void {

@@ -85,7 +85,7 @@ export class Fit {
   /** The sizes of everything except pictures and plots. */
   #look(): string {
     const others = [...this.#box.children].filter((part) => part !== this.#panels);
-    const words = this.#panels.querySelectorAll(".learn-panel > :not(.learn-canvas, .learn-plot-box)");
+    const words = this.#panels.querySelectorAll(".learn-panel > :not(.learn-place, .learn-plot-box)");
     return [innerHeight, this.#panels.clientWidth, ...[...others, ...words].map((part) => part.clientHeight)].join();
   }
 

@@ -23,6 +23,9 @@ export const FRAMES: Readonly<Record<LessonId, readonly Panel["kind"][]>> = {
   failure: ["image", "image", "cloud", "image"],
 };
 
+/** The place of a picture, whose free room the style sheet of the slides measures. */
+export const placed = (canvas: HTMLElement): HTMLElement => make("div", { class: "learn-place" }, canvas);
+
 /** An empty panel in the place of one that is being computed. */
 export function blank(kind: Panel["kind"]): HTMLElement {
   const isPlot = kind === "plot";
@@ -30,7 +33,7 @@ export function blank(kind: Panel["kind"]): HTMLElement {
     "div",
     { class: `learn-panel learn-blank${isPlot ? " learn-wide" : ""}` },
     make("p", { class: "learn-computing" }, phrase("figure.computing", "Computing")),
-    make("div", { class: isPlot ? "learn-plot-box" : "learn-canvas plain" }),
+    isPlot ? make("div", { class: "learn-plot-box" }) : placed(make("div", { class: "learn-canvas plain" })),
     make("p", { class: "learn-legend" }),
   );
 }

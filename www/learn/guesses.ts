@@ -15,12 +15,17 @@ interface Hooks {
   reveal(what: Try, last: () => void): void;
   /** Whether answers are hidden at present. */
   areHidden(): boolean;
+  /** Hides a panel of the figure on a slide, or none. */
+  cover(panel: string | undefined): void;
 }
 
 export class Guesses {
   readonly elements: readonly HTMLElement[];
   /** The exercises that begin at this lesson, for its slide. */
   readonly exercises: readonly HTMLElement[];
+  /** What the slide's button says about each question before it is put. */
+  readonly names: readonly string[];
+  readonly #guesses: readonly Guess[];
   readonly #forms: readonly Form[];
   readonly #hooks: Hooks;
   /** Called with the next complete drawing. */
@@ -35,17 +40,18 @@ export class Guesses {
     this.elements = forms.map(({ element }) => element);
     this.exercises = exercises.map(({ element }) => element);
     this.#forms = [...forms, ...exercises];
-  }
-
-  /** The number of questions for a slide, with the exercises. */
-  get count(): number {
-    return this.#forms.length;
+    this.#guesses = lesson.guesses;
+    this.names = [
+      ...forms.map((_, at) => phrase("slides.ask", "Question {number} (Q)", { number: at + 1 })),
+      ...exercises.map(() => phrase("slides.exercise", "Exercise (Q)")),
+    ];
   }
 
   /** Puts one question or exercise on a slide, or none. */
   ask(index: number | undefined): void {
     this.#held = undefined;
     this.#forms.forEach((form, at) => form.ask(at === index));
+    this.#hooks.cover(index === undefined ? undefined : this.#guesses[index]?.covers);
   }
 
   /** Answers are no longer hidden. */
@@ -80,6 +86,7 @@ export class Guesses {
     };
     const reveal = (given: number) => {
       empty();
+      this.#hooks.cover(undefined);
       // A search takes seconds.
       noted.append(phrase("figure.computing", "Computing"));
       // The answer is about the state of the question, even if the visitor has moved something since.

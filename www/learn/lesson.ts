@@ -1,6 +1,7 @@
 /** The parts of a lesson. */
 
 import { decimals, withUnit } from "./digits";
+import type { SymbolName } from "./maths";
 import type { Ink, LessonId, Values } from "./protocol";
 import type { References } from "./references";
 
@@ -47,6 +48,8 @@ export interface Readout {
 /** The effect of a button. It sets controls at once and then moves one slider slowly, so that the change can be watched. */
 export interface Try {
   set?: Values;
+  /** A slider that each press moves on by one of its steps, up to its end. */
+  step?: string;
   sweep?: { key: string; to: number };
 }
 
@@ -64,6 +67,8 @@ export interface Guess {
   number?: { key: string; unit?: string; digits: number; within: number };
   /** The change of the figure that reveals the answer. */
   reveal: Try;
+  /** The panel from which the answer could be read, which a slide hides until the guess is made. */
+  covers?: string;
   answer: string;
 }
 
@@ -75,6 +80,8 @@ export interface Lesson {
   formula(): Element;
   /** The formula in words. */
   formulaWords: string;
+  /** Symbols of the text that the formula does not have. */
+  symbols?: readonly SymbolName[];
   text: readonly string[];
   /** The stages of a loop, drawn in a row that leads back to its beginning. */
   stages?: readonly string[];

@@ -115,10 +115,10 @@ export function symbol(name: SymbolName): Element {
 const hasColours = (formula: Element): boolean =>
   [...formula.querySelectorAll("mi")].some(({ textContent }) => textContent === "j");
 
-/** The symbols of a formula with their meanings, in their order. */
-export function symbolList(formula: Element): HTMLElement {
+/** The symbols of a formula with their meanings, in their order, and after them those of its text alone. */
+export function symbolList(formula: Element, ofText: readonly SymbolName[] = []): HTMLElement {
   const found = [...formula.querySelectorAll("[data-symbol]")].map((each) => each.getAttribute("data-symbol") ?? "");
-  const names = new Set([...found, ...(hasColours(formula) ? ["j"] : [])]) as Set<SymbolName>;
+  const names = new Set([...found, ...(hasColours(formula) ? ["j"] : []), ...ofText]) as Set<SymbolName>;
   const items = [...names].map((name) => {
     const drawn = symbol(name);
     return make("li", {}, inline(drawn), ` ${drawn.getAttribute("title") ?? ""}`);

@@ -4,6 +4,7 @@ import "../style/learn.css";
 import "../style/learn-prose.css";
 import "../style/embed.css";
 import "../style/learn-figure.css";
+import "../style/learn-marks.css";
 import "../style/learn-blank.css";
 import "../style/learn-print.css";
 import "../style/learn-slides.css";
@@ -75,6 +76,8 @@ export class LearnPage {
   readonly #slides: Slides;
   readonly #address = new Address();
   #chosen: Chosen = chosenBy("");
+  /** Whether slides begin with their questions. */
+  #asksFirst = false;
   #shown: Shown | undefined;
   #isOpen = false;
   /** The figure alone, in a frame of another page. */
@@ -128,6 +131,7 @@ export class LearnPage {
     const named = lessonNamed(asked.get("at")) ?? (slides ? lesson : undefined);
     // Slides that a link opens all begin with their own settings.
     if (slides !== null && !this.#slides.isOpen) this.#forget();
+    if (slides !== null) this.#asksFirst = asked.has("ask");
     this.#show(lesson, named ? valuesFrom(lesson, asked) : this.#kept.of(lesson));
     if (slides !== null) this.#startSlides();
     // Returns from the slides to the lesson at which they were opened.
@@ -253,6 +257,7 @@ export class LearnPage {
     const guesses = new Guesses(lesson, {
       set: (at) => controls.set(at),
       areHidden: () => this.#answers.areHidden,
+      cover: (panel) => (box.dataset.covers = panel ?? ""),
       reveal: (what, last) => {
         showFigure(box);
         player.play(what, last);
@@ -276,7 +281,8 @@ export class LearnPage {
   #text(lesson: Lesson, embed: Embed, guesses: Guesses, tries: HTMLElement): HTMLElement {
     const slides = make("button", { type: "button", class: "learn-slides-button" }, phrase("slides", "Slides"));
     slides.addEventListener("click", () => {
-      this.#chosen = chosenBy("");
+      // A choice stays, because it was made for this class; a lesson outside it is shown among all.
+      if (!this.#chosen.includes(lesson.id)) this.#chosen = chosenBy("");
       this.#startSlides();
       this.#writeAddress("another");
     });
@@ -335,7 +341,8 @@ export class LearnPage {
   #prepare({ lesson, controls }: Shown, drawing: Drawing): void {
     this.#ahead.keep(lesson, controls.values, drawing);
     const next = lessonNamed(this.#chosen[this.#chosen.indexOf(lesson.id) + 1] ?? null);
-    if (next) this.#ahead.prepare(next, this.#kept.of(next));
+    const question = this.#asksFirst ? next?.guesses[0]?.at : {};
+    if (next) this.#ahead.prepare(next, { ...this.#kept.of(next), ...question });
   }
 
   #complain(message: string): void {
@@ -379,7 +386,7 @@ export class LearnPage {
 
   #slideOf({ article, lesson: { id, title }, guesses }: Shown): Slide {
     const ask = (index: number | undefined) => guesses.ask(index);
-    return { article, id, title, chosen: this.#chosen, questions: guesses.count, ask };
+    return { article, id, title, chosen: this.#chosen, questions: guesses.names, asksFirst: this.#asksFirst, ask };
   }
 
   #endSlides(): void {
@@ -397,7 +404,7 @@ export class LearnPage {
     const state = this.#kept.inAddress(shown.lesson.id, languageInAddress());
     shown.embed.show(`#learn&${state}`);
     for (const [key, value] of Object.entries(this.#answers.inAddress)) state.append(key, value);
-    const slides = this.#slides.isOpen ? slidesInAddress(this.#chosen) : "";
+    const slides = this.#slides.isOpen ? slidesInAddress(this.#chosen, this.#asksFirst) : "";
     const address = `#learn&${state}${slides}${this.#isEmbedded ? "&embed" : ""}`;
     this.#address.write(address, entry);
   }

@@ -2,6 +2,7 @@
 
 import type { Controls } from "./controls";
 import type { Lesson, Try } from "./lesson";
+import type { Values } from "./protocol";
 
 /** Steps of a slow move and the milliseconds between them: browsers refuse more than some 100 changes of an address in half a minute. */
 const STEPS = 20;
@@ -24,8 +25,9 @@ export class Player {
   }
 
   /** Calls `last` just before the controls take their last state. Visitors who prefer no motion see that state at once. */
-  play({ set = {}, sweep }: Try, last: () => void = () => {}): void {
+  play({ set = {}, sweep, step: moved }: Try, last: () => void = () => {}): void {
     this.stop();
+    if (moved !== undefined) return this.#move(moved, set);
     const slider = this.#lesson.controls.find(({ key }) => key === sweep?.key);
     if (!sweep || slider?.kind !== "slider" || matchMedia("(prefers-reduced-motion: reduce)").matches) {
       last();
@@ -44,6 +46,13 @@ export class Player {
       }
       this.#controls.set({ [sweep.key]: Number(whole.toFixed(6)) });
     }, EVERY);
+  }
+
+  #move(key: string, set: Values): void {
+    const slider = this.#lesson.controls.find((each) => each.key === key);
+    if (slider?.kind !== "slider") return;
+    const next = Math.min(slider.max, Number(this.#controls.values[key]) + slider.step);
+    this.#controls.set({ ...set, [key]: next });
   }
 
   stop(): void {

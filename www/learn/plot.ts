@@ -7,11 +7,18 @@ import { svg } from "./svg";
 
 /** The size of the drawing, which is as wide as its place: scaling it would make its type too small in a narrow place. */
 const WIDTH = 320;
-/** Landscape format if there is room, not too low to be legible and not higher than a screen or its place. */
-const heightOf = (width: number, most: number): number =>
-  Math.round(Math.min(most, Math.max(Math.min(width, 200), Math.min(0.5 * width, 280, 0.28 * innerHeight))));
-/** Margins between the axes and the edges. */
-const MARGIN = { left: 40, top: 8, right: 14, bottom: 36 };
+/** Landscape format if there is room, not too low to be legible and not higher than a screen. */
+const heightOf = (width: number): number =>
+  Math.round(Math.max(Math.min(width, 200), Math.min(0.5 * width, 280, 0.28 * innerHeight)));
+/** Margins between the axes and the edges; the left one also holds the numbers of the vertical axis. */
+const MARGIN = { left: 22, top: 8, right: 14, bottom: 36 };
+/** Width of a character of an axis, at least. */
+const CHARACTER = 7.5;
+/** Distances of round numbers on an axis, and on one of angles. */
+const ROUND = [10, 5, 2, 1, 0.5];
+const ANGLES = [90, 60, 30, 15, 10, 5];
+/** The smallest range of an axis of angles that has such ticks, degrees. */
+const LEAST_ANGLES = 60;
 /** Height of the type for which the margins are set, px; with larger type, on slides, everything is enlarged. */
 const TYPE = 11;
 /** Smallest distance between the numbers of the horizontal axis, with room for four characters. */
@@ -32,10 +39,11 @@ function spanOf(values: number[], range?: readonly [number, number]): Span {
 }
 
 /** Round numbers within a range, about as many as requested and at least two, because a single one gives no scale. */
-function ticks({ least, most }: Span, count: number): number[] {
-  const rough = (most - least) / count;
+function ticks({ least, most }: Span, count: number, name: string): number[] {
+  const hasAngles = name.endsWith("°") && most - least >= LEAST_ANGLES;
+  const rough = (most - least) / (hasAngles ? 2 * count : count);
   const power = 10 ** Math.floor(Math.log10(rough));
-  const steps = [10, 5, 2, 1, 0.5].map((each) => each * power);
+  const steps = hasAngles ? ANGLES : ROUND.map((each) => each * power);
   const within = (step: number): number[] => {
     const first = Math.ceil(least / step - 1e-9);
     return Array.from({ length: Math.floor(most / step + 1e-9) - first + 1 }, (_, i) =>
@@ -60,12 +68,11 @@ export class Plot {
   #panel: PlotPanel | undefined;
   #width = 0;
   #height = 0;
-  /** The height that the style sheet leaves to the drawing. */
-  #most = Infinity;
 
   constructor() {
     this.element = make("figure", { class: "learn-panel learn-wide" }, this.#title, this.#box, this.#legend);
-    new ResizeObserver(() => this.#fit()).observe(this.element);
+    const observer = new ResizeObserver(() => this.#fit());
+    for (const part of [this.element, this.#box]) observer.observe(part);
   }
 
   show(panel: Panel): void {
@@ -81,32 +88,35 @@ export class Plot {
   }
 
   /**
-   * Redraws for another width or type size, and where the style sheet gives another height or limit. The height that follows from the drawing
-   * itself changes nothing.
+   * Redraws for another width or type size, and where the style sheet gives another height, which can be that of the box. The height that
+   * follows from the drawing itself changes nothing.
    */
   #fit(): void {
     const style = getComputedStyle(this.#drawing);
     const type = parseFloat(style.fontSize) / TYPE || 1;
     const width = Math.round(this.element.clientWidth / type);
-    const height = Math.round(parseFloat(style.getPropertyValue("--plot-height")) / type) || 0;
-    const most = parseFloat(getComputedStyle(this.#box).maxHeight) / type || Infinity;
-    if (width === 0 || (width === this.#width && height === this.#height && most === this.#most)) return;
-    [this.#width, this.#height, this.#most] = [width, height, most];
+    const given = style.getPropertyValue("--plot-height");
+    const height = Math.round((given.includes("%") ? this.#box.clientHeight : parseFloat(given)) / type) || 0;
+    if (width === 0 || (width === this.#width && height === this.#height)) return;
+    [this.#width, this.#height] = [width, height];
     if (this.#panel) this.#draw(this.#panel);
   }
 
   #draw({ series, x, y, at, domain, range }: PlotPanel): void {
     const width = this.#width || WIDTH;
-    const height = this.#height || heightOf(width, this.#most);
-    const box = { left: MARGIN.left, top: MARGIN.top, right: width - MARGIN.right, bottom: height - MARGIN.bottom };
+    const height = this.#height || heightOf(width);
     this.#drawing.setAttribute("viewBox", `0 0 ${width} ${height}`);
     const every = (axis: 0 | 1) => series.flatMap(({ points }) => points.filter((_, i) => i % 2 === axis));
     const [across, up] = [spanOf(at === undefined ? every(0) : [...every(0), at], domain), spanOf(every(1), range)];
+    const [top, bottom] = [MARGIN.top, height - MARGIN.bottom];
+    const rows = ticks(up, marks(bottom - top, 36), y);
+    const widest = Math.max(...rows.map((value) => label(value).length));
+    const box = { left: MARGIN.left + CHARACTER * widest, top, right: width - MARGIN.right, bottom };
     const toX = (value: number) =>
       box.left + ((value - across.least) / (across.most - across.least)) * (box.right - box.left);
     const toY = (value: number) => box.bottom - ((value - up.least) / (up.most - up.least)) * (box.bottom - box.top);
     const parts: SVGElement[] = [];
-    const columns = ticks(across, marks(box.right - box.left, 55));
+    const columns = ticks(across, marks(box.right - box.left, 55), x);
     // Numbers that would touch are left out.
     const numbered = Math.ceil(LEAST_ROOM / (toX(columns[1] ?? NaN) - toX(columns[0] ?? NaN))) || 1;
     columns.forEach((value, index) => {
@@ -116,12 +126,14 @@ export class Plot {
         svg("text", { class: "tick", x: toX(value), y: box.bottom + 13, "text-anchor": "middle" }, label(value)),
       );
     });
-    for (const value of ticks(up, marks(box.bottom - box.top, 36))) {
+    for (const value of rows) {
       parts.push(
         svg("path", { class: "grid", d: `M${box.left} ${toY(value)}H${box.right}` }),
         svg("text", { class: "tick", x: box.left - 5, y: toY(value) + 3.5, "text-anchor": "end" }, label(value)),
       );
     }
+    // A name that is longer than its axis begins at the upper edge.
+    const middle = Math.max((box.top + box.bottom) / 2, (CHARACTER * y.length) / 2);
     parts.push(
       svg("text", { class: "axis", x: (box.left + box.right) / 2, y: height - 6, "text-anchor": "middle" }, x),
     );
@@ -130,7 +142,7 @@ export class Plot {
         "text",
         {
           class: "axis",
-          transform: `translate(10 ${(box.top + box.bottom) / 2}) rotate(-90)`,
+          transform: `translate(10 ${middle}) rotate(-90)`,
           "text-anchor": "middle",
         },
         y,

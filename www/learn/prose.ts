@@ -32,7 +32,7 @@ export function proseOf(lesson: Lesson, { embed, slides, guesses, answers, tries
     embed.element,
     make("p", { class: "learn-gist" }, lesson.gist),
     formula,
-    symbolList(formula),
+    symbolList(formula, lesson.symbols),
     ...(lesson.stages ? [loopOf(lesson.stages)] : []),
     ...paragraphs(lesson, guesses.elements),
     answers,

@@ -14,13 +14,18 @@ export interface Hooks {
 export class Session {
   #worker: Worker | undefined;
   #next = 0;
+  /** The lesson whose request is under way. */
+  #busy: LessonId | undefined;
   readonly #hooks: Hooks;
 
   constructor(hooks: Hooks) {
     this.#hooks = hooks;
   }
 
+  /** A thread that still computes another lesson is ended, because a step of its work can take seconds. */
   ask(lesson: LessonId, values: Values): void {
+    if (this.#busy !== undefined && this.#busy !== lesson) this.end();
+    this.#busy = lesson;
     this.#worker ??= this.#spawn();
     const request: Request = { id: ++this.#next, lesson, values };
     this.#worker.postMessage(request);
@@ -35,6 +40,7 @@ export class Session {
   end(): void {
     this.#worker?.terminate();
     this.#worker = undefined;
+    this.#busy = undefined;
   }
 
   #spawn(): Worker {
@@ -67,6 +73,7 @@ export class Session {
   }
 
   #receive(answer: Answer): void {
+    if ("fault" in answer || answer.done) this.#busy = undefined;
     if ("fault" in answer) this.#fail(answer.fault);
     else this.#hooks.onDrawing(answer.drawing, answer.done);
   }

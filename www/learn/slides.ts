@@ -7,6 +7,8 @@ import type { Chosen } from "./chosen";
 import { Overview, type OverviewHooks } from "./overview";
 import type { LessonId } from "./protocol";
 
+/** The least height of a picture's frame below a list of symbols, as a share of the slide's. Titles and legends will take a part of it. */
+const LEAST_FRAME = 0.34;
 /** Elements that use the arrow keys themselves. */
 const MOVED_BY_ARROWS = "input:not([type=checkbox]), select, textarea";
 /** Elements in which letters choose an option. A field for a number takes no letter that is a command. */
@@ -20,8 +22,10 @@ export interface Slide {
   title: string;
   /** The slides of the show, in their order. */
   chosen: Chosen;
-  /** The number of the lesson's questions. */
-  questions: number;
+  /** What the button for the next question says before each of the lesson's questions. */
+  questions: readonly string[];
+  /** Whether the slide begins with its first question. */
+  asksFirst: boolean;
   /** Puts a question in the place of the lesson's sentence; with none, the sentence returns. */
   ask(index: number | undefined): void;
 }
@@ -35,11 +39,7 @@ export class Slides {
   readonly element: HTMLDialogElement;
   readonly #holder = make("div", { class: "learn-slide" });
   readonly #turns: readonly { by: 1 | -1; button: HTMLButtonElement }[];
-  readonly #question = make(
-    "button",
-    { type: "button", "aria-pressed": "false" },
-    phrase("slides.ask", "Question (Q)"),
-  );
+  readonly #question = make("button", { type: "button" });
   readonly #overview: Overview;
   readonly #hooks: SlidesHooks;
   readonly #answers: Answers;
@@ -70,6 +70,7 @@ export class Slides {
     // After a typed guess the keys are commands again.
     this.element.addEventListener("submit", () => this.#focus());
     this.element.addEventListener("click", () => this.#blank(false));
+    new ResizeObserver(() => this.#explain()).observe(this.#holder);
     this.element.addEventListener("close", () => {
       this.#blank(false);
       if (document.fullscreenElement) void document.exitFullscreen();
@@ -104,12 +105,13 @@ export class Slides {
     const isAnother = this.#slide !== slide;
     this.#slide = slide;
     this.element.setAttribute("aria-label", phrase("slides.slide", "Slide: {title}", { title: slide.title }));
-    this.#question.hidden = slide.questions === 0;
     this.#put(undefined);
     this.count(slide.chosen);
     if (!isAnother && slide.article.parentElement === this.#holder) return;
     this.#holder.replaceChildren(slide.article);
     this.#holder.scrollTop = 0;
+    this.#explain();
+    if (slide.asksFirst) this.#put(0);
     // A removed control loses the focus, and then the keys would have no target.
     this.#focus();
   }
@@ -133,9 +135,13 @@ export class Slides {
   }
 
   /** The next question of the slide; after the last one, none. */
-  #ask(): void {
+  get #next(): number | undefined {
     const next = (this.#asked ?? -1) + 1;
-    this.#put(next < (this.#slide?.questions ?? 0) ? next : undefined);
+    return next < (this.#slide?.questions.length ?? 0) ? next : undefined;
+  }
+
+  #ask(): void {
+    this.#put(this.#next);
     const field = this.#holder.querySelector<HTMLInputElement>(".learn-guess[data-asked] input[type=number]");
     if (field) field.focus({ preventScroll: true });
     else this.#focus();
@@ -143,8 +149,17 @@ export class Slides {
 
   #put(index: number | undefined): void {
     this.#asked = index;
-    this.#question.setAttribute("aria-pressed", String(index !== undefined));
+    const next = this.#next;
+    const sentence = phrase("slides.sentence", "Sentence (Q)");
+    this.#question.textContent = (next === undefined ? undefined : this.#slide?.questions[next]) ?? sentence;
     this.#slide?.ask(index);
+  }
+
+  /** Lists the symbols of the formula if their lines leave enough height to the pictures. */
+  #explain(): void {
+    this.#holder.removeAttribute("data-terse");
+    const { clientHeight = 0 } = this.#holder.querySelector(".learn-place") ?? {};
+    this.#holder.toggleAttribute("data-terse", clientHeight < LEAST_FRAME * this.#holder.clientHeight);
   }
 
   /** At an exercise, opens its answer or closes it; elsewhere, shows all answers or hides them. */

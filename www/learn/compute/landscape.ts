@@ -49,7 +49,7 @@ export function landscapeOf(
       alt: "The hemisphere of all visible normals seen from the front; dark means a low cost. It has {minima} minima.",
       details: { minima: minima.length },
       legend: words.curves
-        ? "line: explains one colour; dark: explains all; dots: minima; cross: truth"
+        ? "red, green, blue line: explains this colour; dark: all three; dots: minima; cross: truth"
         : `dark: explains the pixel; dots: minima; cross: truth${words.hasSteps ? "; line: solver" : ""}`,
     },
     { width: SIDE, height: SIDE },

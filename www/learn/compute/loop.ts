@@ -3,14 +3,15 @@
 import type { Drawing, Values } from "../protocol";
 import { atPixel, pictureOf } from "./draw";
 import { landscapeOf } from "./landscape";
-import { angleBetween, turned } from "./measure";
-import { held, picture } from "./pose";
+import { angleBetween, degreesBetween, turned } from "./measure";
+import { held, passed, picture } from "./pose";
 import { isOn, logAt, numberOf, pixelAt, vectorAt } from "./scenes";
 
 export function* loop(values: Values): Generator<Drawing> {
   const made = picture(values);
   const grid = made.image;
-  const { panel, rotation, correspondence, normals } = held(made, numberOf(values, "offset"));
+  const [offset, passes] = [numberOf(values, "offset"), numberOf(values, "pass")];
+  const { panel, rotation, correspondence, normals } = passes === 0 ? held(made, offset) : passed(made, offset, passes);
   const chosen = pixelAt(grid.mask, grid.width, grid.height, numberOf(values, "px"), numberOf(values, "py"));
   const truth = vectorAt(made.truth.imageNormals, chosen);
   const seen = correspondence[chosen] ?? -1;
@@ -45,6 +46,7 @@ export function* loop(values: Values): Generator<Drawing> {
       landscape.panel,
     ],
     numbers: {
+      pose: degreesBetween(rotation, made.pose.rotation),
       minima: landscape.minima,
       off: known ? angleBetween(known, truth) : NaN,
       end: angleBetween(landscape.end, truth),

@@ -5,7 +5,7 @@ import type { CloudPanel, Drawing, Values } from "../protocol";
 import { pictureOf, plot, scalarOf } from "./draw";
 import { cloudsOf } from "./clouds";
 import { aboutY, degreesBetween, meanOf, product, turned } from "./measure";
-import { afterStages, numberOf, scene, watched } from "./scenes";
+import { after, afterStages, numberOf, scene, watched } from "./scenes";
 import { statusOf, wordsOf, type Status } from "./status";
 
 const SIZE = 64;
@@ -41,7 +41,7 @@ function middleOf(made: Sample): number[] {
 }
 
 /** The true pose, turned about the object's middle. */
-function told(made: Sample, degrees: number, registration: "fixed" | "joint"): Options {
+function told(made: Sample, degrees: number, registration: "fixed" | "joint" | "icp"): Options {
   const middle = middleOf(made);
   const turn = aboutY(degrees);
   const arm = made.pose.translation.map((value, axis) => value - (middle[axis] ?? 0));
@@ -81,6 +81,10 @@ const stateOf = (estimator: Estimator, status: Status): State => {
 /** The state under a pose that is off by this angle, after one pass up to the image's surface. */
 export const held = (made: Sample, offset: number): State =>
   afterStages(made, told(made, offset, "fixed"), TO_SURFACE, (estimator) => stateOf(estimator, statusOf("held")));
+
+/** The state after passes of the loop that moves the depth map onto the image's surface, from a pose that is off by this angle. */
+export const passed = (made: Sample, offset: number, passes: number): State =>
+  after(made, told(made, offset, "icp"), passes, (estimator) => stateOf(estimator, statusOf("held")));
 
 export function* pose(values: Values): Generator<Drawing> {
   const made = picture(values);

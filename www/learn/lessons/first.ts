@@ -103,10 +103,10 @@ export const lambert: Lesson = {
   formulaWords:
     "The intensity is the albedo times the cosine of the angle between normal and lamp, and zero beyond 90 degrees.",
   text: [
-    "Hold a sheet of paper under a lamp. It is brightest when it faces the lamp. Tilt it, and the same light is spread over more paper, so each part gets less. This is Lambert's law: the intensity {E} is the albedo {rho}, the share of light that the surface reflects, times the cosine {n}·{l} of the angle between the normal {n} and the direction {l} to the lamp. A matte surface looks equally bright wherever the camera is.",
+    "Hold a sheet of paper under a lamp. It is brightest when it faces the lamp. Tilt it, and the same light is spread over more paper, so each part gets less. This is Lambert's law: the intensity {E} is the albedo {rho}, the share of light that the surface reflects, times the cosine {n}·{l} of the angle between the normal {n} and the direction {l} to the lamp. The sliders of the lamp set the parts of this unit vector to the right and down. A matte surface looks equally bright wherever the camera is.",
     "The cosine is flat near 0° and steep near 90°. At 60° half of the intensity is left, and beyond 90° the surface is in its own shadow. Light does not add up to less than nothing, hence the maximum in the formula.",
     "A line of equal intensity is called an isophote. The figure marks that of {=level}; drag this number to change it. On a ball, an isophote is a circle around the point that faces the lamp, because all normals on it have the same angle to the lamp. On any other surface, an isophote still joins all points with that angle, but now the line runs wherever the surface has such normals. Bright spots mark the places that face the lamp.",
-    "One intensity fixes only one angle. The normal may lie anywhere on a cone around the lamp: for half of the largest intensity, on the cone of 60°. To see the cone, follow one isophote on the ball: all its colours in the normal map of lesson 1 differ, and all its pixels look the same. A second lamp in another place gives a second cone. Two cones meet in at most two lines, so two lamps leave at most two normals.",
+    "One intensity fixes only one angle. The normal may lie anywhere on a cone, which contains all directions at this angle to the lamp: for half of the largest intensity, on the cone of 60°. The rays on the ball show it: they lead from its centre to the isophote, each along a normal of this intensity. In the normal map of lesson 1 the pixels of an isophote all have different colours, and yet they all look the same here. A second lamp in another place gives a second cone. Two cones meet in at most two lines, so two lamps leave at most two normals.",
   ],
   tasks: [
     "Move the lamp from the left to the right. The isophotes follow it, and the shadow grows on the other side.",
@@ -125,6 +125,7 @@ export const lambert: Lesson = {
       at: { level: 0.95 },
       number: { key: "angle", unit: "°", digits: 0, within: 5 },
       reveal: { sweep: { key: "level", to: 0.5 } },
+      covers: "law",
       answer: "At 60°, because the cosine of 60° is one half. At 45° the intensity is still 0.71.",
     },
   ],

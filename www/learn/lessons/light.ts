@@ -13,6 +13,7 @@ export const pixel: Lesson = {
   formula: () => block(logS(), mo("="), symbol("a"), mo("+"), shading()),
   formulaWords:
     "The logarithm of the intensity of colour j is the log albedo plus a quadratic form of the normal, whose matrix is the light of that colour.",
+  symbols: ["L"],
   text: [
     "A matte surface under one distant lamp follows Lambert's law: its intensity is the albedo times {n}·l, the cosine of the angle between the unit normal {n} and the direction l of the lamp. Light from many directions adds up. So a pixel's intensity {S} in red, green and blue depends on its normal, on the albedo (how much light the surface reflects; {a} is its logarithm) and on the light {L}, the 27 numbers in the three matrices {M}. It does not depend on the position of the pixel in the picture.",
     "Each colour has its own light {M}. Light that is red from one side and blue from the other gives each direction another colour, and so the colour of a pixel says more about its normal than its brightness does. The ball shows the colour of every normal that the camera can see. In the plot across the ball, each curve is one colour.",

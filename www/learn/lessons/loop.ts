@@ -15,25 +15,27 @@ export const loop: Lesson = {
   stages: ["Light", "Normals", "Surface", "Pose", "Depth map"],
   text: [
     "Lesson 11 took every normal from the depth map, for all pixels at once. In box 2, the formula here, the normal {n} of each single pixel is free again. The first term asks it to explain the colours of its pixel. The second one keeps it near {R}{m}, the depth map's normal under the present pose.",
-    "The boxes show one pass of the loop: (1) fit the light, with the normals held; (2) find the normal of each pixel; (3) integrate them to a surface (lesson 9); (4) estimate the pose anew; (5) refine the depth map (lesson 13). The paper finds the pose by moving the depth map onto the surface. This program registers as in lesson 11, which needs no surface; the surface is then a result. The next pass begins with the new pose, and so with a better prior. The loop ends when the pose no longer changes.",
-    "The map shows the cost of one pixel over all normals, with the prior that the depth map gives under a pose that is off by {=offset}. The ring marks the prior, the dots mark the minima, and the line shows the solver's steps from the prior. A small {lambda} leaves several minima. With a larger one they merge into one near the prior.",
+    "The boxes show one pass of the loop: (1) fit the light, with the normals held; (2) find the normal of each pixel; (3) integrate them to a surface (lesson 9); (4) estimate the pose anew; (5) refine the depth map (lesson 13). The paper finds the pose by moving the depth map onto the surface. This program registers as in lesson 11, which needs no surface; the surface is then a result. The slider of passes goes the way of the paper. The next pass begins with the new pose, and so with a better prior. The loop ends when the pose no longer changes.",
+    "The map shows the cost of one pixel over all normals, with the prior that the depth map gives under an initial pose that is off by {=offset}. The ring marks the prior, the dots mark the minima, and the line shows the solver's steps from the prior. A small {lambda} leaves several minima. With a larger one they merge into one near the prior.",
     "If the pose is right, the prior is near the true normal, and so is that minimum. Over all pixels of this picture, the mean error is then 13.7° without a prior, 3.2° at λ = 0.05 and 4.9° at λ = 10, where the picture hardly counts. If the pose is wrong, the minimum moves away from the true normal. The robust prior is a compromise: a prior more than about 23° off is ignored.",
   ],
   tasks: [
+    "Run the next pass. From an initial pose 12° off, the error of the pose falls to 4.8° in the first pass and to 1.0° in six, and the ring moves to the cross.",
     "Raise λ under the right pose. Here, for a pixel of the cheek, the minima merge into one near the true normal: the solver is 14.5° off at λ = 0.001 and 1.0° at λ = 1.",
     "Set the pose 20° off. Raise λ until the minima of the pixel, now another one, have merged. The solver then ends far from the true normal: 17.1° off at λ = 1.",
     "Set the pose 40° off and make the prior robust, with λ = 0.05. The solver ends 3.3° off; with the plain prior it was 38.7°.",
   ],
   tries: [
-    { set: { offset: 0, robust: 0, weight: -3, px: 0.42, py: 0.56 }, sweep: { key: "weight", to: 0 } },
-    { set: { offset: 20, robust: 0, weight: -3, px: 0.48, py: 0.72 }, sweep: { key: "weight", to: 0 } },
-    { set: { offset: 40, robust: 1, weight: -1.3, px: 0.48, py: 0.72 } },
+    { set: { offset: 12, px: 0.48, py: 0.72 }, step: "pass" },
+    { set: { pass: 0, offset: 0, robust: 0, weight: -3, px: 0.42, py: 0.56 }, sweep: { key: "weight", to: 0 } },
+    { set: { pass: 0, offset: 20, robust: 0, weight: -3, px: 0.48, py: 0.72 }, sweep: { key: "weight", to: 0 } },
+    { set: { pass: 0, offset: 40, robust: 1, weight: -1.3, px: 0.48, py: 0.72 } },
   ],
   guesses: [
     {
       question: "The pose is 20° off. λ rises from 0.001 to 1. What happens to the error of the solver?",
       before: 3,
-      at: { offset: 20, robust: 0, weight: -3, px: 0.48, py: 0.72 },
+      at: { pass: 0, offset: 20, robust: 0, weight: -3, px: 0.48, py: 0.72 },
       choices: ["It falls", "It stays", "It grows"],
       right: 2,
       reveal: { sweep: { key: "weight", to: 0 } },
@@ -42,7 +44,17 @@ export const loop: Lesson = {
   ],
   can: "You can describe one pass of the loop, and what a wrong pose does to the normals.",
   controls: [
-    { kind: "slider", key: "offset", label: "Error of the pose", min: -40, max: 40, step: 1, initial: 12, unit: "°" },
+    {
+      kind: "slider",
+      key: "offset",
+      label: "Error of the initial pose",
+      min: -40,
+      max: 40,
+      step: 1,
+      initial: 12,
+      unit: "°",
+    },
+    { kind: "slider", key: "pass", label: "Passes", min: 0, max: 8, step: 1, initial: 0 },
     {
       kind: "slider",
       key: "weight",
@@ -59,6 +71,7 @@ export const loop: Lesson = {
     { kind: "slider", key: "py", label: "Pixel, down", min: 0, max: 1, step: 0.01, initial: 0.72 },
   ],
   readouts: [
+    { key: "pose", label: "Error of the pose", unit: "°", digits: 1, ink: "pose" },
     { key: "minima", label: "Minima of the pixel", digits: 0, ink: "minimum" },
     { key: "off", label: "Error of the prior", unit: "°", digits: 1, ink: "prior" },
     { key: "end", label: "Error of the solver", unit: "°", digits: 1, ink: "normal" },
