@@ -13,9 +13,9 @@ import { ofNamedPictures } from "./around.js";
 import { isOfCarrier } from "./formats/frames.js";
 import { isRawName } from "./formats/raw.js";
 import { areFives, isVaried, nameOf, sampled } from "./guess.js";
-import { type LensFile, doubtLenses, lensOf } from "./lens-files.js";
+import type { LensFile } from "./lens-owners.js";
 import { type Pair, type Pairs, tum } from "./lists.js";
-import { key, stem } from "./names.js";
+import { isLensFile, key, stem } from "./names.js";
 import { once } from "./once.js";
 import { pairsOf, sayUnpaired } from "./pairs.js";
 import { type TextOfFrame, assignOwn, frameOf, split } from "./perframe.js";
@@ -50,7 +50,7 @@ export interface FolderOptions {
 
 const FRAMES = 20;
 
-const owners = once(() => import("./lens-owners.js"));
+const lensFiles = once(() => import("./lens-owners.js"));
 
 /** Files that are neither pictures nor calibrations and can be ignored. */
 const IGNORED =
@@ -229,13 +229,13 @@ interface Sorted {
 }
 
 /** The relevant files of a folder by kind; browsers list a folder's files in any order. */
-function sortedFiles(files: NamedFile[]): Sorted {
+async function sortedFiles(files: NamedFile[]): Promise<Sorted> {
   const kept = files
     .map(({ name, bytes }) => ({ name: name.replace(/\\/g, "/").replace(/^\.\//, ""), bytes }))
     .filter(({ name }) => ELSEWHERE.test(name) || !IGNORED.test(name));
   const found: Sorted = { pictures: [], texts: [], lenses: [], others: [] };
   for (const file of kept) {
-    const lens = lensOf(file);
+    const lens = isLensFile(file.name) ? (await lensFiles()).lensOf(file) : undefined;
     if (lens !== undefined) {
       found.lenses.push(lens);
       continue;
@@ -318,7 +318,7 @@ async function calibrationOf({ texts, others, lenses }: Sorted, frames: Readonly
     if (frames.has(key(file.name)) && poses.some(({ from, to }) => from === undefined && to === undefined))
       reader.warnings.push(ofFile(file.name, placeOfFrame()));
   }
-  if (lenses.length > 0) reader.readings.push(...(await owners()).giveLenses(lenses, found, reader.warnings));
+  if (lenses.length > 0) reader.readings.push(...(await lensFiles()).giveLenses(lenses, found, reader.warnings));
   const isLeft = withoutInertial(
     found.flatMap(({ poses }) => poses),
     reader.warnings,
@@ -373,7 +373,7 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   checkOptions(options, "options");
   const { unit, size, frames: most = FRAMES, signal } = options;
   signal?.throwIfAborted();
-  const kept = sortedFiles(files);
+  const kept = await sortedFiles(files);
   const { pictures, texts } = kept;
   const reader = new FolderReader(signal);
   let found = tum([...pictures, ...texts], reader.warnings) ?? pairsOf(pictures, reader.warnings);
@@ -400,7 +400,7 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   const assign = (each: RigFolder) => assigned(each, { paths: paths.map(({ name }) => name), isAligned: allAligned });
   if (own.length > 0 && frames.length > 0) assignOwn(folder, own, assign);
   else Object.assign(folder, assign(withTexts(folder, own)));
-  doubtLenses(folder.warnings);
+  if (folder.warnings.some(({ file = "" }) => isLensFile(file))) (await lensFiles()).doubtLenses(folder.warnings);
   if (frames.length > 0) folder.poses = withoutCarriers(folder.poses, folder.warnings);
   folder.poses = posesForClouds(folder.poses, frames, folder.warnings);
   if (frames.length === 0) sayUnpaired(pictures, folder.warnings);

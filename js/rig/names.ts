@@ -58,3 +58,7 @@ export function timeOf(name: string): number | undefined {
   if (ticks !== undefined) return Number(only) / ticks;
   return /\.\d{3,}$/.test(only) ? Number(only) : undefined;
 }
+
+/** Names of files that hold only the coefficients of a lens. */
+const LENS_FILE = /(?:^|[_.-])(?:d|(?:camera[_-]?)?dist(?:ortion)?(?:[_-]?coeff?\w*)?|coeffs?)(?=[_.-])/i;
+export const isLensFile = (path: string): boolean => LENS_FILE.test(path.replace(/^.*[/\\]/, ""));

@@ -179,10 +179,8 @@ fn hidden(frame: &Frame, positions: &[[f32; 3]], pixels: &[[f32; 2]]) -> Vec<boo
     };
     let mut nearest = vec![f32::INFINITY; columns * rows];
     for (position, pixel) in positions.iter().zip(pixels) {
-        if let Some(at) = place(*pixel) {
-            if position[2] < nearest[at] {
-                nearest[at] = position[2];
-            }
+        if let Some(at) = place(*pixel).filter(|&at| position[2] < nearest[at]) {
+            nearest[at] = position[2];
         }
     }
     let is_behind = |(position, pixel): (&[f32; 3], &[f32; 2])| {
