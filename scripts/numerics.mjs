@@ -86,8 +86,9 @@ async function finish({ file, target, name = MODULE }) {
   // Level "z" saves the last kilobyte; speed comes from LLVM. By default, Binaryen inlines functions with one caller, whatever their size.
   // Engines switch to a function's optimised code only at its next call, so one long loop would run slowly to its end.
   const apart = ["--one-caller-inline-max-function-size", "50"];
-  // Only the stack uses the first kilobyte, and only if it overflows, so offsets can fold into addresses.
-  const smaller = ["-Oz", "--low-memory-unused"];
+  // Only the stack uses the first kilobyte, and only if it overflows, so offsets can fold into addresses. A second pass shortens what the
+  // first one leaves.
+  const smaller = ["-Oz", "-Oz", "--low-memory-unused"];
   // Repeated expressions compress better than a local variable that holds them.
   const repeated = ["--skip-pass=local-cse"];
   const bare = ["--strip-producers", "--strip-target-features"];

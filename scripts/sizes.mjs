@@ -47,17 +47,17 @@ function firstScripts() {
 
 const CHECK_WASM = /bimodal_stereo_check_bg/;
 /** The rendered example, which loads on demand. */
-const EXAMPLE = /\/(?:rigs-|bimodal_stereo_rigs_bg)/;
+const EXAMPLE = /\/(?:example-|rigs-|bimodal_stereo_rigs_bg)/;
 /** The writers of calibrations and clouds and that of the report, which load when somebody saves one. */
 const WRITERS = /\/write-/;
 const REPORT = /^assets\/reportfile-/;
 /**
  * Readers that load only for files of their kind: JPEG without a browser, PNM and PFM, NumPy's arrays, tables as text, raw pixels, colour profiles, texts, YAML, TOML, JSON with comments, calibrations of products,
- * lenses in separate files, point clouds, EXR, TIFF, recordings, messages about unsupported files. The code that makes the Lab's pair from
+ * lenses in separate files, point clouds and their poses, EXR, TIFF, recordings, messages about unsupported files. The code that makes the Lab's pair from
  * the files of a run belongs here as well.
  */
 const OTHERS =
-  /\/(?:decoder|dist\d*|pointclouds|exr|exr-others|products|text|tiff|tiff-codecs|js-yaml|recorded|containers|lens-owners|pairs|pnm|npy\d*(?!-matrix)|table-cells|raw-pixels|icc)-/;
+  /\/(?:decoder|dist\d*|pointclouds|exr|exr-others|products|text|tiff|tiff-codecs|js-yaml|recorded|containers|lens-owners|turned|pairs|pnm|npy\d*(?!-matrix)|table-cells|raw-pixels|icc)-/;
 
 /** The files that run a check and read its input, all loaded on demand, and those that only the example or a saved result needs. */
 function checkFiles() {

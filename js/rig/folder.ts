@@ -21,7 +21,6 @@ import { pairsOf, sayUnpaired } from "./pairs.js";
 import { type TextOfFrame, assignOwn, frameOf, split } from "./perframe.js";
 import { checkNamed, isRasterFile, isTextFile, metresPerUnit, pixelSize, readRigFile } from "./read.js";
 import { isAligned, isOther, roleOf } from "./roles.js";
-import { posesForClouds } from "./turned.js";
 import type {
   CheckFrame,
   Mask,
@@ -51,6 +50,7 @@ export interface FolderOptions {
 const FRAMES = 20;
 
 const lensFiles = once(() => import("./lens-owners.js"));
+const clouds = once(() => import("./turned.js"));
 
 /** Files that are neither pictures nor calibrations and can be ignored. */
 const IGNORED =
@@ -402,7 +402,8 @@ export async function readRigFolder(files: NamedFile[], options: FolderOptions =
   else Object.assign(folder, assign(withTexts(folder, own)));
   if (folder.warnings.some(({ file = "" }) => isLensFile(file))) (await lensFiles()).doubtLenses(folder.warnings);
   if (frames.length > 0) folder.poses = withoutCarriers(folder.poses, folder.warnings);
-  folder.poses = posesForClouds(folder.poses, frames, folder.warnings);
+  if (frames.some(({ depth }) => depth.points !== undefined))
+    folder.poses = (await clouds()).posesForClouds(folder.poses, frames, folder.warnings);
   if (frames.length === 0) sayUnpaired(pictures, folder.warnings);
   checkUnits(frames, folder.warnings);
   if (frames.length + folder.cameras.length + folder.poses.length === 0)

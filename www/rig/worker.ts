@@ -4,7 +4,6 @@ import "../engine/hold";
 import { checkCalibration, projectFrame, samplePair, suggestMask, type CheckFrame } from "../../pkg/index.js";
 import { faultOf } from "../engine/fault";
 import { maskWithin, restrictDepth, restrictImage } from "./restrict";
-import { loadExample } from "./example";
 import { isRecording, readRigFile, readRigFolder, type RigReading } from "./files";
 import { picture } from "./pictures";
 import type { Answer, Assembly, CallKind, Calls, FramePlan, Request, Summary } from "./protocol";
@@ -192,7 +191,7 @@ const handlers: Handlers = {
     return assembly;
   },
   async example({ first }) {
-    const { frames, poses } = await loadExample();
+    const { frames, poses } = await (await import("./example")).loadExample();
     return assemble("the example", first, frames, { cameras: [], poses, warnings: [] });
   },
   async take({ first, ...ask }, id) {
