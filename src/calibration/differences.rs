@@ -16,8 +16,8 @@ struct Around {
 }
 
 /// Values and gradients of the tiles of each cue. Each used tile gets an equal part of the total curvature, because the
-/// curvature of a single tile is too uncertain. `curvatures` are those of the cues at a state near this one; if there are
-/// none, they are evaluated, which takes most of the time.
+/// curvature of a single tile is too uncertain. `curvatures` are those of the cues at a state near this one; an empty list
+/// is filled, which takes most of the time.
 pub(super) fn differences(
     units: &Units,
     state: &State,
