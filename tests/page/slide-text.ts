@@ -17,8 +17,8 @@ export interface SlideText {
   isCut: boolean;
 }
 
-/** A formula has its own small letters, and the options of a closed select are not drawn. */
-const LEFT_OUT = "math, option";
+/** The options of a closed select are not drawn. */
+const LEFT_OUT = "option";
 
 export const textsIn = (page: Page, part: string): Promise<SlideText[]> =>
   page.locator(part).evaluate((root, leftOut) => {
