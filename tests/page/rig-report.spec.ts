@@ -21,7 +21,7 @@ test("the report begins with the page's verdict, and its command gives the same 
   const told = matrixFile("it's told.txt", 0.025);
   await openPair(page);
   await put(page, [told]);
-  await run(page);
+  await run(page, "Run the check");
   await expect(page.locator(".rig-word")).toBeVisible();
   const word = await page.locator(".rig-word").textContent();
   const sentence = await page.locator(".rig-verdict p").first().textContent();
