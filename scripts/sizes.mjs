@@ -57,7 +57,7 @@ const REPORT = /^assets\/reportfile-/;
  * the files of a run belongs here as well.
  */
 const OTHERS =
-  /\/(?:decoder|dist\d*|pointclouds|exr|exr-others|products|text|tiff|tiff-codecs|js-yaml|recorded|containers|lens-owners|turned|pairs|pnm|npy\d*(?!-matrix)|table-cells|raw-pixels|icc)-/;
+  /\/(?:decoder|dist\d*|pointclouds|exr|exr-others|products|text|tiff|tiff-codecs|js-yaml|recorded|containers|lens-files|turned|pairs|pnm|npy\d*(?!-matrix)|table-cells|raw-pixels|icc)-/;
 
 /** The files that run a check and read its input, all loaded on demand, and those that only the example or a saved result needs. */
 function checkFiles() {

@@ -13,7 +13,7 @@ import { ofNamedPictures } from "./around.js";
 import { isOfCarrier } from "./formats/frames.js";
 import { isRawName } from "./formats/raw.js";
 import { areFives, isVaried, nameOf, sampled } from "./guess.js";
-import type { LensFile } from "./lens-owners.js";
+import type { LensFile } from "./lens-files.js";
 import { type Pair, type Pairs, tum } from "./lists.js";
 import { isLensFile, key, stem } from "./names.js";
 import { once } from "./once.js";
@@ -49,7 +49,7 @@ export interface FolderOptions {
 
 const FRAMES = 20;
 
-const lensFiles = once(() => import("./lens-owners.js"));
+const lensFiles = once(() => import("./lens-files.js"));
 const clouds = once(() => import("./turned.js"));
 
 /** Files that are neither pictures nor calibrations and can be ignored. */

@@ -43,10 +43,11 @@ pub(super) fn find(frame: &Frame, projection: &Projection) -> Vec<Discontinuity>
     let width = frame.grid.width as isize;
     let is_continued = |index: usize| {
         let here = depth(projection, index);
+        let gap = frame.clear_gap(here);
         // At the border of the raster, a wrong neighbour takes the place of none.
         [1, -1, width, -width].into_iter().all(|stride| {
             let beside = projection.positions.get(index.wrapping_add_signed(stride));
-            beside.is_some_and(|position| frame.is_beside(f64::from(position[2]) - here, here))
+            beside.is_some_and(|position| f64::from(position[2]) - here <= gap)
         })
     };
     let is_near =

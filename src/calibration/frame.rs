@@ -106,12 +106,6 @@ impl Frame {
         HIDDEN_LEAST.max(HIDDEN_SHARE * distance).max(NOISE_SIGMAS * self.noise * distance * distance)
     }
 
-    /// Whether a point is less than [`clear_gap`](Self::clear_gap) behind another one; false for NaN.
-    pub fn is_beside(&self, behind: f64, distance: f64) -> bool {
-        let of_noise = || behind <= NOISE_SIGMAS * self.noise * distance * distance;
-        behind <= HIDDEN_LEAST || behind <= HIDDEN_SHARE * distance || of_noise()
-    }
-
     /// Halves the image and the mask, and adapts the camera; an odd last row or column is dropped.
     pub fn halve(&mut self) {
         let (from, to) = (self.planes.size, self.planes.halved());

@@ -21,7 +21,7 @@ test("the report begins with the page's verdict, and its command gives the same 
   const told = matrixFile("it's told.txt", 0.025);
   await openPair(page);
   await put(page, [told]);
-  await run(page, "Run the check");
+  await run(page);
   await expect(page.locator(".rig-word")).toBeVisible();
   const word = await page.locator(".rig-word").textContent();
   const sentence = await page.locator(".rig-verdict p").first().textContent();
@@ -52,5 +52,24 @@ test("the report begins with the page's verdict, and its command gives the same 
   const hashes = (inputs: { sha256: string }[]) => inputs.map(({ sha256 }) => sha256);
   expect(hashes(again.inputs)).toEqual(expect.arrayContaining(hashes(numbers.inputs)));
   for (const hash of hashes(numbers.inputs)) expect(report).toContain(hash);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("a check waits for files that are still being read, because one may be its calibration", async ({ lab, page }) => {
+  await openPair(page);
+  await page.getByRole("button", { name: "Next: your calibration" }).click();
+  const isDisabled = await page.locator("#rig").evaluate(async (rig, text) => {
+    const field = rig.querySelector<HTMLInputElement>("input[type=file]:not([webkitdirectory])");
+    const files = new DataTransfer();
+    files.items.add(new File([text], "told.txt"));
+    if (field) field.files = files.files;
+    field?.dispatchEvent(new Event("change"));
+    // The page shows a change in a microtask.
+    await Promise.resolve();
+    return [...rig.querySelectorAll("button")].find(({ textContent }) => textContent === "Estimate a calibration")
+      ?.disabled;
+  }, matrixFile("told.txt", 0.025).buffer.toString());
+  expect(isDisabled).toBe(true);
+  await expect(page.getByRole("button", { name: "Run the check" })).toBeEnabled();
   expect(lab.complaints).toEqual([]);
 });

@@ -14,11 +14,9 @@ const heightOf = (width: number): number =>
 const MARGIN = { left: 22, top: 8, right: 14, bottom: 36 };
 /** Width of a character of an axis, at least. */
 const CHARACTER = 7.5;
-/** Distances of round numbers on an axis, and on one of angles. */
+/** Steps between the numbers of an axis, and of one of angles. */
 const ROUND = [10, 5, 2, 1, 0.5];
 const ANGLES = [90, 60, 30, 15, 10, 5];
-/** The smallest range of an axis of angles that has such ticks, degrees. */
-const LEAST_ANGLES = 60;
 /** Height of the type for which the margins are set, px; with larger type, on slides, everything is enlarged. */
 const TYPE = 11;
 /** Smallest distance between the numbers of the horizontal axis, with room for four characters. */
@@ -39,8 +37,7 @@ function spanOf(values: number[], range?: readonly [number, number]): Span {
 }
 
 /** Round numbers within a range, about as many as requested and at least two, because a single one gives no scale. */
-function ticks({ least, most }: Span, count: number, name: string): number[] {
-  const hasAngles = name.endsWith("°") && most - least >= LEAST_ANGLES;
+function ticks({ least, most }: Span, count: number, hasAngles = false): number[] {
   const rough = (most - least) / (hasAngles ? 2 * count : count);
   const power = 10 ** Math.floor(Math.log10(rough));
   const steps = hasAngles ? ANGLES : ROUND.map((each) => each * power);
@@ -102,21 +99,21 @@ export class Plot {
     if (this.#panel) this.#draw(this.#panel);
   }
 
-  #draw({ series, x, y, at, domain, range }: PlotPanel): void {
+  #draw({ series, x, y, at, domain, range, hasAngles }: PlotPanel): void {
     const width = this.#width || WIDTH;
     const height = this.#height || heightOf(width);
     this.#drawing.setAttribute("viewBox", `0 0 ${width} ${height}`);
     const every = (axis: 0 | 1) => series.flatMap(({ points }) => points.filter((_, i) => i % 2 === axis));
     const [across, up] = [spanOf(at === undefined ? every(0) : [...every(0), at], domain), spanOf(every(1), range)];
     const [top, bottom] = [MARGIN.top, height - MARGIN.bottom];
-    const rows = ticks(up, marks(bottom - top, 36), y);
+    const rows = ticks(up, marks(bottom - top, 36));
     const widest = Math.max(...rows.map((value) => label(value).length));
     const box = { left: MARGIN.left + CHARACTER * widest, top, right: width - MARGIN.right, bottom };
     const toX = (value: number) =>
       box.left + ((value - across.least) / (across.most - across.least)) * (box.right - box.left);
     const toY = (value: number) => box.bottom - ((value - up.least) / (up.most - up.least)) * (box.bottom - box.top);
     const parts: SVGElement[] = [];
-    const columns = ticks(across, marks(box.right - box.left, 55), x);
+    const columns = ticks(across, marks(box.right - box.left, 55), hasAngles);
     // Numbers that would touch are left out.
     const numbered = Math.ceil(LEAST_ROOM / (toX(columns[1] ?? NaN) - toX(columns[0] ?? NaN))) || 1;
     columns.forEach((value, index) => {

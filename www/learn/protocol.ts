@@ -103,6 +103,8 @@ export interface PlotPanel extends Common {
   domain?: readonly [number, number];
   /** Smallest range of y, so that noise does not fill the picture. */
   range?: [number, number];
+  /** Whether x is an angle in degrees, whose axis is divided by 30, 60 or 90. */
+  hasAngles?: boolean;
 }
 
 export interface CloudPanel extends Common {

@@ -72,7 +72,9 @@ export class CalibrationStep {
     this.#list.hidden = this.#hint.hidden = this.#rig.candidates.length === 0;
     this.#hint.textContent = `Does this match your rig? ${this.#rig.hasScans ? "If above and below, or in front and behind, are swapped" : "If left and right are swapped"}, invert it; the wrong direction is the most common mistake.`;
     this.#next.textContent = this.#rig.candidates.length === 0 ? "Estimate a calibration" : "Run the check";
-    this.#next.disabled = this.#rig.missing.length > 0;
+    // A file that is still being read may hold a calibration.
+    const isReading = this.#rig.busy !== "" || this.#rig.items.some(({ state }) => state === "reading");
+    this.#next.disabled = isReading || this.#rig.missing.length > 0;
   }
 
   #row(candidate: Candidate): { element: HTMLElement; show(candidate: Candidate): void } {

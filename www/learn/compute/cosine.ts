@@ -46,7 +46,7 @@ export function plotOfLamp(around: number): PlotPanel {
       { name: "nine for the intensity", ink: "intensity", points: curve(direct) },
       { name: "nine for its logarithm", ink: "light", points: curve(byLog) },
     ],
-    { range: [-0.1, 1.2] },
+    { range: [-0.1, 1.2], hasAngles: true },
   );
 }
 
@@ -71,7 +71,7 @@ export function plotOfDegrees(): PlotPanel {
         points: curve(part),
       })),
     ],
-    { range: [-0.5, 1] },
+    { range: [-0.5, 1], hasAngles: true },
   );
 }
 

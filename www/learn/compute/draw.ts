@@ -91,5 +91,5 @@ export const plot = (
   x: string,
   y: string,
   series: PlotPanel["series"],
-  rest: Partial<Pick<PlotPanel, "at" | "domain" | "range">> = {},
+  rest: Partial<Pick<PlotPanel, "at" | "domain" | "range" | "hasAngles">> = {},
 ): PlotPanel => ({ kind: "plot", ...words, x, y, series, ...rest });

@@ -71,7 +71,7 @@ export function* lambert(values: Values): Generator<Drawing> {
         "angle, °",
         "intensity",
         [{ name: "intensity", ink: "intensity", points: law() }],
-        { at: degreesOf(level), range: [0, 1] },
+        { at: degreesOf(level), range: [0, 1], hasAngles: true },
       ),
     ],
     numbers: {

@@ -40,8 +40,8 @@ function middleOf(made: Sample): number[] {
   return middle;
 }
 
-/** The true pose, turned about the object's middle. */
-function told(made: Sample, degrees: number, registration: "fixed" | "joint" | "icp"): Options {
+/** The options of a run that starts from the true pose turned about the object's middle. */
+function startedOff(made: Sample, degrees: number, registration: "fixed" | "joint" | "icp"): Options {
   const middle = middleOf(made);
   const turn = aboutY(degrees);
   const arm = made.pose.translation.map((value, axis) => value - (middle[axis] ?? 0));
@@ -80,11 +80,11 @@ const stateOf = (estimator: Estimator, status: Status): State => {
 
 /** The state under a pose that is off by this angle, after one pass up to the image's surface. */
 export const held = (made: Sample, offset: number): State =>
-  afterStages(made, told(made, offset, "fixed"), TO_SURFACE, (estimator) => stateOf(estimator, statusOf("held")));
+  afterStages(made, startedOff(made, offset, "fixed"), TO_SURFACE, (estimator) => stateOf(estimator, statusOf("held")));
 
 /** The state after passes of the loop that moves the depth map onto the image's surface, from a pose that is off by this angle. */
 export const passed = (made: Sample, offset: number, passes: number): State =>
-  after(made, told(made, offset, "icp"), passes, (estimator) => stateOf(estimator, statusOf("held")));
+  after(made, startedOff(made, offset, "icp"), passes, (estimator) => stateOf(estimator, statusOf("held")));
 
 export function* pose(values: Values): Generator<Drawing> {
   const made = picture(values);
@@ -96,7 +96,7 @@ export function* pose(values: Values): Generator<Drawing> {
   yield draw();
   const run = String(values.run);
   if (run !== "hold") {
-    const options: Options = run === "search" ? { scale: 1 } : told(made, offset, "joint");
+    const options: Options = run === "search" ? { scale: 1 } : startedOff(made, offset, "joint");
     for (const { estimator, status } of watched(made, options)) {
       state = stateOf(estimator, status);
       yield draw();
@@ -105,7 +105,7 @@ export function* pose(values: Values): Generator<Drawing> {
   for (const each of OFFSETS.slice(curve.length / 2)) {
     curve.push(
       each,
-      afterStages(made, told(made, each, "fixed"), TO_LIGHT, (estimator) => estimator.report.residual),
+      afterStages(made, startedOff(made, each, "fixed"), TO_LIGHT, (estimator) => estimator.report.residual),
     );
     yield draw();
   }
@@ -145,6 +145,7 @@ function drawing(values: Values, made: Sample, state: State, curve: number[]): D
       [{ name: "residual", ink: "pose", points: [...curve], dots: true }],
       {
         domain: ENDS,
+        hasAngles: true,
         range: [0, MOST_RESIDUAL[String(values.light)] ?? 1],
         ...(Math.abs(at) <= ENDS[1] ? { at } : {}),
       },
