@@ -299,7 +299,8 @@ const PARTS = [
     name: "page",
     run: page,
     needsBuild: true,
-    closing: /^ +(?:\d+ (?:passed|failed|skipped|flaky|did not run)| {3}tests\/page\/).*$/gm,
+    // The names of the tests that failed follow their number.
+    closing: /^ +(?:\d+ (?:passed|failed|skipped|flaky|did not run)| {3}\[\w+\] › ).*$/gm,
   },
 ];
 
