@@ -181,6 +181,18 @@ impl PhotometricRegistration {
         Ok(())
     }
 
+    /// Completes the sigmas of a candidate that becomes the decision: its registration did without the jackknife. One of
+    /// sampled points is registered again with all of them, which includes it.
+    pub fn complete_sigmas(&mut self, pair: &ViewPair, found: &mut PhotometricReport) {
+        if found.sampled {
+            return;
+        }
+        let problem = self.sharp.problem(pair, is_scale_held(pair), self.near);
+        if let Ok(complete) = self.photometric.with_jackknife(&problem, found) {
+            *found = complete;
+        }
+    }
+
     fn register_anew(
         &mut self,
         pair: &ViewPair,

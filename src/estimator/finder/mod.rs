@@ -317,8 +317,9 @@ impl Finder {
 
     /// A slice of the registrations by silhouettes without an initial pose.
     fn compare_silhouettes(&mut self, pair: &ViewPair, memory: &mut Memory, mut anywhere: Box<Anywhere>) -> Next {
-        if anywhere.advance(pair, PhotometricRegistration::prepared(memory, pair).normals()) {
-            return everywhere_by(anywhere.best(), std::mem::take(&mut self.chosen));
+        let photometric = PhotometricRegistration::prepared(memory, pair);
+        if anywhere.advance(pair, photometric.normals()) {
+            return everywhere_by(pair, photometric, anywhere.best(), std::mem::take(&mut self.chosen));
         }
         Next::Phase(Phase::Silhouettes(anywhere))
     }
@@ -339,19 +340,25 @@ impl Finder {
         let are_called_for = silhouettes::are_called_for(pair, self.chosen.best.as_deref());
         Ok(match are_called_for.then(|| Anywhere::new(pair, photometric.normals())).flatten() {
             Some(anywhere) => Next::Phase(Phase::Silhouettes(Box::new(anywhere))),
-            None => everywhere_by(None, std::mem::take(&mut self.chosen)),
+            None => everywhere_by(pair, photometric, None, std::mem::take(&mut self.chosen)),
         })
     }
 }
 
 /// The decision for silhouettes, or else for the best registration.
-fn everywhere_by(silhouettes: Option<SilhouetteReport>, Choice { best, rivals, ends }: Choice) -> Next {
+fn everywhere_by(
+    pair: &ViewPair,
+    photometric: &mut PhotometricRegistration,
+    silhouettes: Option<SilhouetteReport>,
+    Choice { best, rivals, ends }: Choice,
+) -> Next {
     match (silhouettes, best) {
         (Some(found), _) => {
             let by = Method::Silhouettes(Box::new(found));
             Next::Decision(Decision { rivals: Some(Vec::new()), ..Decision::of(by) })
         }
         (None, Some(mut best)) => {
+            photometric.complete_sigmas(pair, &mut best);
             best.uncertainty.add_spread(&best.pose, &ends);
             Next::Decision(Decision { by: Method::Photometric(best), rivals: Some(rivals), ends })
         }
@@ -388,5 +395,43 @@ impl Phase {
             Self::Silhouettes(_) => (BEFORE_CONTRAST, Activity::ComparingSilhouettes),
             Self::Done => (1.0, Activity::Registering),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::{Options, Start};
+    use crate::pose::Angles;
+    use crate::scenes::{SampleRequest, Scene, surface};
+    use crate::view::Size;
+
+    /// So few points that the registration of a candidate already takes all of them, and none follows.
+    #[test]
+    fn the_sigmas_of_a_decision_are_those_of_a_registration_with_the_jackknife() {
+        let request = SampleRequest {
+            size: Size { width: 56, height: 56 },
+            rotation: Angles { beta: 15.0, ..Angles::default() }.rotation(),
+            noise: 0.01,
+            ..SampleRequest::default()
+        };
+        let sample = Scene::new(&surface("bust").unwrap()).unwrap().sample(&request).unwrap();
+        let options = Options { start: Start::Search, ..Options::default() };
+        let pair = ViewPair::new(sample.colour_image(), &sample.depth_map(), options).unwrap();
+        let mut memory = None;
+        let grid = ImageGrid::new(&pair.image).unwrap();
+        let mut finder = Finder::everywhere(&pair, &mut memory, None, grid).unwrap();
+        let decision = loop {
+            match finder.advance(&pair, &mut memory).unwrap() {
+                Advance::Ongoing(..) => {}
+                Advance::Done(decision) => break decision,
+                Advance::Nothing => panic!("nothing was found"),
+            }
+        };
+        let found = decision.photometric().expect("a photometric registration");
+        assert!(!found.sampled);
+        let again = PhotometricRegistration::prepared(&mut memory, &pair).register(&pair, &found.pose).unwrap();
+        let ratio = found.covariance.trace() / again.covariance.trace();
+        assert!((0.8..1.25).contains(&ratio), "{ratio}");
     }
 }

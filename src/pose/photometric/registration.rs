@@ -93,6 +93,22 @@ impl Photometric {
         matches!(self.phase, Phase::Done(_))
     }
 
+    /// The result of a registration of this problem, from any initial pose, with the covariance that
+    /// [`PhotometricOptions::jackknife`] adds.
+    ///
+    /// # Errors
+    /// Those of [`report`](Self::report).
+    pub fn with_jackknife(
+        &mut self,
+        problem: &PhotometricProblem<'_>,
+        found: &PhotometricReport,
+    ) -> Result<PhotometricReport> {
+        self.state = State { pose: found.pose, light: found.light, exposure: found.exposure };
+        (self.phase, self.iterations) = (Phase::Done(found.termination), found.iterations);
+        self.options = PhotometricOptions::default();
+        self.report(problem)
+    }
+
     /// The result so far.
     ///
     /// # Errors
