@@ -109,6 +109,12 @@ test("a slide lists the symbols of its formula if the pictures stay large", asyn
   for (const id of ["normal", "lambert", "relief", "grey", "colours", "surface"]) {
     await open(page, `at=${id}&slides`);
     await expect(symbols, id).toBeVisible();
+    // The choice is the same when it is made again, with the figure drawn.
+    await expect(figure(page)).toHaveAttribute("aria-busy", "false");
+    await page.setViewportSize({ width: 1281, height: 720 });
+    await page.evaluate(() => new Promise(requestAnimationFrame));
+    await expect(symbols, `${id} after its figure`).toBeVisible();
+    await page.setViewportSize({ width: 1280, height: 720 });
   }
   await page.keyboard.press("q");
   await expect(symbols).toBeHidden();

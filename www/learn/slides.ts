@@ -7,8 +7,8 @@ import type { Chosen } from "./chosen";
 import { Overview, type OverviewHooks } from "./overview";
 import type { LessonId } from "./protocol";
 
-/** The least height of a picture's frame below a list of symbols, as a share of the slide's. Titles and legends will take a part of it. */
-const LEAST_FRAME = 0.34;
+/** The least height of a panel (picture, title and legend) below a list of symbols, as a share of the slide's. */
+const LEAST_PANEL = 0.405;
 /** Elements that use the arrow keys themselves. */
 const MOVED_BY_ARROWS = "input:not([type=checkbox]), select, textarea";
 /** Elements in which letters choose an option. A field for a number takes no letter that is a command. */
@@ -155,11 +155,14 @@ export class Slides {
     this.#slide?.ask(index);
   }
 
-  /** Lists the symbols of the formula if their lines leave enough height to the pictures. */
+  /**
+   * Lists the symbols of the formula if their lines leave enough height to the pictures. Measures panels, because their height is the same
+   * before and after their pictures are drawn.
+   */
   #explain(): void {
     this.#holder.removeAttribute("data-terse");
-    const { clientHeight = 0 } = this.#holder.querySelector(".learn-place") ?? {};
-    this.#holder.toggleAttribute("data-terse", clientHeight < LEAST_FRAME * this.#holder.clientHeight);
+    const { clientHeight = 0 } = this.#holder.querySelector(".learn-panel") ?? {};
+    this.#holder.toggleAttribute("data-terse", clientHeight < LEAST_PANEL * this.#holder.clientHeight);
   }
 
   /** At an exercise, opens its answer or closes it; elsewhere, shows all answers or hides them. */
