@@ -11,26 +11,24 @@ use nalgebra::Vector3;
 
 use super::increment::{PoseMatrix, PoseVector};
 
-/// Number of sectors, each with the same number of points. Their covariance has rank five; that of the tiles, to which
-/// it is added, has full rank.
-pub(super) const SECTORS: usize = 6;
-
-/// The sector of each point, by its angle about the centre as seen along the line of sight.
-pub(super) fn sectors(points: impl Iterator<Item = Vector3<f64>>, centre: Vector3<f64>) -> Vec<usize> {
+/// Which of `count` sectors each point lies in, by its angle about the centre as seen along the line of sight. Sectors
+/// have the same number of points.
+pub(super) fn sectors(points: impl Iterator<Item = Vector3<f64>>, centre: Vector3<f64>, count: usize) -> Vec<usize> {
     let angles: Vec<f64> = points.map(|point| (point.y - centre.y).atan2(point.x - centre.x)).collect();
     let mut order: Vec<usize> = (0..angles.len()).collect();
     order.sort_by(|&a, &b| angles[a].total_cmp(&angles[b]));
     let mut sectors = vec![0; angles.len()];
     for (place, point) in order.into_iter().enumerate() {
-        sectors[point] = SECTORS * place / angles.len();
+        sectors[point] = count * place / angles.len();
     }
     sectors
 }
 
 /// Covariance of a pose from its moves without each of n sectors: (n - 1) / n times their sum of squares about the
 /// mean. So few moves estimate the variance poorly. The error divided by the estimated sigma follows Student's
-/// distribution with n - 1 degrees of freedom, whose variance is (n - 1) / (n - 3). Zero if a move is not finite.
-pub(super) fn covariance(moves: &[PoseVector; SECTORS]) -> PoseMatrix {
+/// distribution with n - 1 degrees of freedom, whose variance is (n - 1) / (n - 3). The rank is at most n - 1; the
+/// covariance of the tiles, to which this is added, has full rank. Zero if a move is not finite.
+pub(super) fn covariance<const SECTORS: usize>(moves: &[PoseVector; SECTORS]) -> PoseMatrix {
     let count = SECTORS as f64;
     let growth = (count - 1.0) / (count - 3.0);
     let mean = moves.iter().sum::<PoseVector>() / count;
@@ -47,12 +45,14 @@ mod tests {
     use super::*;
     use crate::numeric::noise;
 
+    const SECTORS: usize = 6;
+
     #[test]
     fn sectors_are_equal_in_points_and_lie_side_by_side() {
         let turn = |k: usize| (k as f64 * 0.37).sin_cos();
         let points: Vec<_> = (0..600).map(|k| Vector3::new(turn(k).1 + 5.0, turn(k).0 - 2.0, k as f64)).collect();
         let middle = Vector3::new(5.0, -2.0, 0.0);
-        let found = sectors(points.iter().copied(), middle);
+        let found = sectors(points.iter().copied(), middle, SECTORS);
         for sector in 0..SECTORS {
             assert_eq!(found.iter().filter(|&&other| other == sector).count(), 600 / SECTORS);
         }

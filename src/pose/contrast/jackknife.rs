@@ -5,9 +5,11 @@ use super::objective::State;
 use super::problem::ContrastProblem;
 use super::registration::ContrastRegistration;
 use crate::pose::increment::{PoseMatrix, PoseVector};
-use crate::pose::jackknife::{SECTORS, covariance, sectors};
+use crate::pose::jackknife::{covariance, sectors};
 use crate::pose::similarity::Similarity;
 
+/// Number of sectors of the jackknife.
+const SECTORS: usize = 6;
 /// Number of steps from the final pose, for each sector that is left out. It is larger than for photometric
 /// registration, because the local means converge slowly.
 const STEPS: usize = 8;
@@ -19,7 +21,7 @@ impl ContrastRegistration {
     pub(super) fn jackknife(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> PoseMatrix {
         let samples = &self.objective.samples;
         let points = samples.list.iter().map(|sample| pose.apply(sample.point));
-        let sectors = sectors(points, pose.apply(samples.centre));
+        let sectors = sectors(points, pose.apply(samples.centre), SECTORS);
         let weights = samples.weight.clone();
         let mut moves = [PoseVector::zeros(); SECTORS];
         for (sector, moved) in moves.iter_mut().enumerate() {

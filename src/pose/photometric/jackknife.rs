@@ -6,10 +6,13 @@ use super::problem::PhotometricProblem;
 use super::solver::Photometric;
 use crate::error::Result;
 use crate::pose::increment::{Frame, PoseMatrix, PoseVector};
-use crate::pose::jackknife::{SECTORS, covariance, sectors};
+use crate::pose::jackknife::{covariance, sectors};
 
 /// Maximum number of points, evenly spread. Model errors do not average out over more points.
 const MOST_POINTS: usize = 20_000;
+/// Number of sectors of the jackknife. With fewer, each holds a larger share of the information, and the moves without
+/// it are too long; set on random scenes (docs/lab/thresholds.md).
+const SECTORS: usize = 12;
 /// Number of Gauss-Newton steps that start from the final pose and leave out a sector; set on random scenes
 /// (docs/lab/thresholds.md).
 const STEPS: usize = 3;
@@ -30,7 +33,7 @@ impl Photometric {
     fn leave_sectors_out(&mut self, problem: &PhotometricProblem<'_>, frame: &Frame) -> PoseMatrix {
         let end = self.state;
         let point = |index| end.pose.apply(Vector3::from(problem.points.get(index).map(f64::from)));
-        let sectors = sectors(self.points.indices().map(point), frame.centre);
+        let sectors = sectors(self.points.indices().map(point), frame.centre, SECTORS);
         let weights = self.points.weights().to_vec();
         let mut moves = [PoseVector::zeros(); SECTORS];
         for (sector, moved) in moves.iter_mut().enumerate() {
