@@ -26,9 +26,9 @@ export const GALLERY = [
   {
     kind: "cut",
     name: "Half a vase",
-    shows: "The depth camera sees one half of the vase. The run converges although it is three degrees off.",
+    shows: "The depth camera sees one half of the vase. The pose is three degrees off, and the status says that it is uncertain.",
     level: "medium",
-    ends: { status: "converged", degrees: 3.4, millimetres: 62 },
+    ends: { status: "ambiguous", degrees: 3.4, millimetres: 62 },
   },
   {
     kind: "marble",

@@ -86,7 +86,7 @@ test("the right relief of a view of 48 pixels without noise is doubted by no oth
     const made = pair({ surface: "bust", light, size: 48, angles: { beta }, noise: 0 });
     const right = found(made, 1);
     assert.ok(apart(right.pose, made.pose) < 2);
-    assert.equal(right.status, "converged", right.message);
+    assert.notEqual(right.reason?.code, "other-unit", right.message);
   }
 });
 

@@ -142,16 +142,19 @@ impl Estimator {
         }
     }
 
-    /// Caps the verdict if another depth unit fits the image better, because a wrong unit can also explain rivals.
+    /// Caps the verdict if another depth unit fits the image better, because a wrong unit can also explain rivals and a
+    /// large sigma.
     fn check_unit(&mut self, ended: Verdict) -> Verdict {
-        let has_rivals =
-            self.history.hollow.is_none() && ended.0 == Status::Ambiguous && !self.report.rivals.is_empty();
-        let is_joint = self.pair.options.registration == Registration::Joint;
-        if !(is_joint && (ended.0 == Status::Converged || has_rivals)) {
-            return ended;
-        }
         let registration = &mut self.stages.registration;
         let found = registration.decision.as_ref().and_then(Decision::photometric);
+        let may_explain = match &ended {
+            (Status::Converged, _) | (Status::Ambiguous, Some(Reason::Rivals { .. })) => true,
+            (Status::Ambiguous, Some(Reason::RotationUncertain { .. })) => found.is_some(),
+            _ => false,
+        };
+        if !(may_explain && self.pair.options.registration == Registration::Joint) {
+            return ended;
+        }
         let check = |memory| checks::other_unit(memory, &self.pair, &self.solution.pose, found);
         let reason = registration.photometric.as_mut().and_then(check);
         reason.map_or(ended, verdict::capped)
