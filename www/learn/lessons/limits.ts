@@ -96,7 +96,7 @@ export const failure: Lesson = {
   ],
   tasks: [
     "Remove the nose of the disc. At 100 % the rotation cannot be determined, and the report names the axis.",
-    "Cut away as much of the depth map as possible. Without 95 % of its width no pose fits, and the status is lost. Without 90 % the status is converged, with a sigma of 0.53° instead of the 0.06° of the whole map.",
+    "Cut away as much of the depth map as possible. Without 95 % of its width no pose fits, and the status is lost. Without 90 % the status is converged, with a sigma of 0.53° instead of the 0.12° of the whole map.",
     "Print texture on the object. Now, with the print at 100 %, more of the colour stays unexplained than with none, and the rotation is so uncertain that the status is lost. The report names the axis.",
     "Increase the rotation between the views. Here at 90° and with a narrow depth map, little remains to compare.",
   ],
