@@ -106,7 +106,7 @@ export class LearnPage {
     );
     this.#answers = new Answers(parent, () => this.#toggleAnswers());
     this.#exercises = exerciseList(this.#answers.button());
-    this.#slides = new Slides(this.#answers, {
+    this.#slides = new Slides({
       turn: (by) => this.#turn(by),
       jump: (id) => this.#turnTo(id),
       choose: (chosen) => this.#choose(chosen),
@@ -255,7 +255,11 @@ export class LearnPage {
     const embed = new Embed(titleOf(lesson));
     box.append(embed.source);
     const guesses = new Guesses(lesson, {
-      set: (at) => controls.set(at),
+      set: (at) => {
+        player.stop();
+        controls.set(at);
+      },
+      values: () => controls.values,
       areHidden: () => this.#answers.areHidden,
       cover: (panel) => (box.dataset.covers = panel ?? ""),
       reveal: (what, last) => {
@@ -364,9 +368,19 @@ export class LearnPage {
   #turnTo(id: LessonId): void {
     const lesson = lessonNamed(id);
     if (!lesson) return;
+    this.#recall();
     // Before the lesson is shown, because that writes the address of its values.
     this.#writeAddress("another");
     this.#show(lesson, this.#kept.of(lesson));
+    this.#writeAddress();
+  }
+
+  /** A slide that is left at a question is found again in the state from before its questions. */
+  #recall(): void {
+    const { lesson, guesses } = this.#shown ?? {};
+    if (!lesson || !guesses?.before) return;
+    this.#kept.keep(lesson, guesses.before);
+    this.#point(lesson.id);
     this.#writeAddress();
   }
 
@@ -386,13 +400,16 @@ export class LearnPage {
 
   #slideOf({ article, lesson: { id, title }, guesses }: Shown): Slide {
     const ask = (index: number | undefined) => guesses.ask(index);
-    return { article, id, title, chosen: this.#chosen, questions: guesses.names, asksFirst: this.#asksFirst, ask };
+    const answer = () => guesses.answer();
+    const [chosen, asksFirst] = [this.#chosen, this.#asksFirst];
+    return { article, id, title, chosen, questions: guesses.names, asksFirst, ask, answer };
   }
 
   #endSlides(): void {
     const shown = this.#shown;
     if (!shown || !this.#isOpen) return;
     this.#main.replaceChildren(shown.article);
+    shown.guesses.ask(undefined);
     shown.article.querySelector("h2")?.focus();
     this.#writeAddress();
   }
