@@ -74,6 +74,26 @@ test("pictures that are soon computed do not fade, and numbers are marked at onc
   expect(await fades(".learn-numbers dd", "font-weight")).toBeLessThanOrEqual(0.2);
 });
 
+test("the figure follows a drag that is faster than its computation, marked as earlier", async ({ lab, page }) => {
+  await open(page, "at=lambert");
+  const seen = await page.locator('[data-number="angle"]').evaluate(async (number) => {
+    const numbers = number.closest(".learn-numbers");
+    const seen: string[] = [];
+    const note = () =>
+      seen.push(`${number.textContent}${numbers?.getAttribute("aria-busy") === "true" ? " earlier" : ""}`);
+    new MutationObserver(note).observe(number, { childList: true, characterData: true, subtree: true });
+    const slider = document.querySelector<HTMLInputElement>('.learn-controls [name="level"]');
+    for (const level of ["0.5", "0.95"]) {
+      if (slider) slider.value = level;
+      slider?.dispatchEvent(new Event("input"));
+    }
+    while (!seen.some((each) => each.startsWith("18"))) await new Promise(requestAnimationFrame);
+    return seen;
+  });
+  expect(seen).toEqual(["60° earlier", "18°"]);
+  expect(lab.complaints).toEqual([]);
+});
+
 test("numbers lose their weight and pictures fade after a drag until the new ones are there", async ({ lab, page }) => {
   const requests = await holdRequests(page);
   const parts = [page.locator(".learn-figure .learn-numbers"), page.locator(".learn-figure .learn-panels")];

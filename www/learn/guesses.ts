@@ -89,19 +89,7 @@ export class Guesses {
   }
 
   #form(guess: Guess): Form {
-    const answer = make("p", { class: "learn-answer", role: "status" });
-    const noted = make("p", { class: "soft learn-noted", "aria-live": "polite" });
-    const compare = make("button", { type: "submit", disabled: true }, phrase("guess.compare", "Compare"));
-    const field = guess.choices ? choicesOf(guess.choices) : numberOf(guess);
-    const form = make(
-      "form",
-      { class: "learn-guess" },
-      make("p", { class: "soft learn-guess-head" }, phrase("guess", "Predict, then look")),
-      make("fieldset", {}, make("legend", {}, ...sentence(guess.question)), field.element),
-      compare,
-      noted,
-      answer,
-    );
+    const { form, field, compare, noted, answer } = partsOf(guess);
     const empty = () => {
       noted.replaceChildren();
       answer.replaceChildren();
@@ -143,9 +131,9 @@ export class Guesses {
     const ask = (isNow: boolean) => {
       form.toggleAttribute("data-asked", isNow);
       form.removeAttribute("data-open");
+      empty();
       if (!isNow) return;
       form.reset();
-      empty();
       compare.disabled = true;
       isAsked = true;
       this.#hooks.set(guess.at);
@@ -160,6 +148,23 @@ export class Guesses {
     };
     return { element: form, ask, answer: toggle };
   }
+}
+
+function partsOf(guess: Guess) {
+  const answer = make("p", { class: "learn-answer", role: "status" });
+  const noted = make("p", { class: "soft learn-noted", "aria-live": "polite" });
+  const compare = make("button", { type: "submit", disabled: true }, phrase("guess.compare", "Compare"));
+  const field = guess.choices ? choicesOf(guess.choices) : numberOf(guess);
+  const form = make(
+    "form",
+    { class: "learn-guess" },
+    make("p", { class: "soft learn-guess-head" }, phrase("guess", "Predict, then look")),
+    make("fieldset", {}, make("legend", {}, ...sentence(guess.question)), field.element),
+    compare,
+    noted,
+    answer,
+  );
+  return { form, field, compare, noted, answer };
 }
 
 interface Field {

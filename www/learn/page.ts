@@ -59,6 +59,7 @@ interface Shown {
 export class LearnPage {
   readonly #session = new Session({
     onDrawing: (drawing, done) => this.#draw(drawing, done),
+    onEarlier: (drawing) => this.#follow(drawing),
     onFault: ({ message }) => this.#complain(message),
   });
   readonly #ahead = new Ahead();
@@ -341,6 +342,16 @@ export class LearnPage {
     if (done && this.#slides.isOpen) this.#prepare(shown, drawing);
   }
 
+  /** Pictures and numbers follow a drag, marked as earlier ones. */
+  #follow(drawing: Drawing): void {
+    const shown = this.#shown;
+    if (!shown) return;
+    const inWords = drawingIn(shown.lesson.id, drawing);
+    shown.figure.follow(inWords);
+    shown.readouts.show(inWords);
+    shown.readouts.wait();
+  }
+
   /** The next slide is computed while this one is looked at. */
   #prepare({ lesson, controls }: Shown, drawing: Drawing): void {
     this.#ahead.keep(lesson, controls.values, drawing);
@@ -399,10 +410,7 @@ export class LearnPage {
   }
 
   #slideOf({ article, lesson: { id, title }, guesses }: Shown): Slide {
-    const ask = (index: number | undefined) => guesses.ask(index);
-    const answer = () => guesses.answer();
-    const [chosen, asksFirst] = [this.#chosen, this.#asksFirst];
-    return { article, id, title, chosen, questions: guesses.names, asksFirst, ask, answer };
+    return { article, id, title, guesses, chosen: this.#chosen, asksFirst: this.#asksFirst };
   }
 
   #endSlides(): void {

@@ -3,6 +3,7 @@
 import { make } from "../dom";
 import { phrase } from "../words";
 import type { Chosen } from "./chosen";
+import type { Guesses } from "./guesses";
 import { Overview, type OverviewHooks } from "./overview";
 import type { LessonId } from "./protocol";
 
@@ -23,14 +24,10 @@ export interface Slide {
   title: string;
   /** The slides of the show, in their order. */
   chosen: Chosen;
-  /** What the button for the next question says before each of the lesson's questions. */
-  questions: readonly string[];
+  /** The questions, which take the place of the lesson's sentence. */
+  guesses: Guesses;
   /** Whether the slide begins with its first question. */
   asksFirst: boolean;
-  /** Puts a question in the place of the lesson's sentence; with none, the sentence returns. */
-  ask(index: number | undefined): void;
-  /** Shows the answer of the present question, or takes it away. */
-  answer(): void;
 }
 
 export interface SlidesHooks extends OverviewHooks {
@@ -97,7 +94,7 @@ export class Slides {
     const [previous, next] = this.#turns.map(({ button }) => button);
     const count = [this.#overview.button, this.#overview.element];
     const turning = [previous, ...count, next].filter((each) => each !== undefined);
-    this.#answer.addEventListener("click", () => this.#slide?.answer());
+    this.#answer.addEventListener("click", () => this.#slide?.guesses.answer());
     return make("div", { class: "learn-slide-bar" }, ...turning, this.#question, this.#answer, whole, close);
   }
 
@@ -146,7 +143,7 @@ export class Slides {
   /** The next question of the slide; after the last one, none. */
   get #next(): number | undefined {
     const next = (this.#asked ?? -1) + 1;
-    return next < (this.#slide?.questions.length ?? 0) ? next : undefined;
+    return next < (this.#slide?.guesses.names.length ?? 0) ? next : undefined;
   }
 
   #ask(): void {
@@ -161,8 +158,8 @@ export class Slides {
     this.#answer.hidden = index === undefined;
     const next = this.#next;
     const sentence = phrase("slides.sentence", "Sentence (Q)");
-    this.#question.textContent = (next === undefined ? undefined : this.#slide?.questions[next]) ?? sentence;
-    this.#slide?.ask(index);
+    this.#question.textContent = (next === undefined ? undefined : this.#slide?.guesses.names[next]) ?? sentence;
+    this.#slide?.guesses.ask(index);
   }
 
   /**
@@ -220,7 +217,7 @@ export class Slides {
     const commands: Record<string, () => void> = {
       f: () => this.#fill(),
       q: () => this.#ask(),
-      a: () => this.#slide?.answer(),
+      a: () => this.#slide?.guesses.answer(),
       b: () => this.#blank(true),
       ".": () => this.#blank(true),
     };
