@@ -207,6 +207,7 @@ test("a link hides every answer until a button or a key shows it", async ({ lab,
   await expect(control(page, "stretch")).toHaveValue("0.5");
   // The same on a slide, by a key.
   await page.goto("./#learn&at=pose&answers=hidden&slides");
+  await expect(dialog(page)).toBeVisible();
   await page.keyboard.press("q");
   await guess(page);
   await expect(control(page, "run")).toHaveValue("hold");
