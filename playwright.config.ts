@@ -8,7 +8,7 @@ const PORT = Number(process.env.PAGE_PORT ?? 4199);
 const FOLDER = "/some/folder/";
 
 /** Learn has catalogues of other languages; its tests also run in these. */
-const LEARN = /\/(?:learn|learn-layout|lecture|slide-figures|slides)\.spec\.ts$/;
+const LEARN = /\/(?:learn|learn-layout|lecture|questions|slide-figures|slides)\.spec\.ts$/;
 
 /** The system's browser is used, because Playwright would download its own. */
 const chromium =

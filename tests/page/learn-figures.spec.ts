@@ -59,6 +59,41 @@ async function holdRequests(page: Page): Promise<{ hold(): Promise<void>; releas
   return { hold: () => set(true), release: () => set(false) };
 }
 
+test("pictures that are soon computed do not fade, and numbers are marked at once", async ({ page }) => {
+  await open(page, "at=surface");
+  const fades = (selector: string, property: string) =>
+    page
+      .locator(selector)
+      .first()
+      .evaluate((each, property) => {
+        each.closest("[aria-busy]")?.setAttribute("aria-busy", "true");
+        const { transitionProperty, transitionDelay } = getComputedStyle(each);
+        return transitionProperty === property ? Number.parseFloat(transitionDelay) : NaN;
+      }, property);
+  expect(await fades(".learn-panels .learn-canvas", "opacity")).toBeGreaterThanOrEqual(0.4);
+  expect(await fades(".learn-numbers dd", "font-weight")).toBeLessThanOrEqual(0.2);
+});
+
+test("the figure follows a drag that is faster than its computation, marked as earlier", async ({ lab, page }) => {
+  await open(page, "at=lambert");
+  const seen = await page.locator('[data-number="angle"]').evaluate(async (number) => {
+    const numbers = number.closest(".learn-numbers");
+    const seen: string[] = [];
+    const note = () =>
+      seen.push(`${number.textContent}${numbers?.getAttribute("aria-busy") === "true" ? " earlier" : ""}`);
+    new MutationObserver(note).observe(number, { childList: true, characterData: true, subtree: true });
+    const slider = document.querySelector<HTMLInputElement>('.learn-controls [name="level"]');
+    for (const level of ["0.5", "0.95"]) {
+      if (slider) slider.value = level;
+      slider?.dispatchEvent(new Event("input"));
+    }
+    while (!seen.some((each) => each.startsWith("18"))) await new Promise(requestAnimationFrame);
+    return seen;
+  });
+  expect(seen).toEqual(["60° earlier", "18°"]);
+  expect(lab.complaints).toEqual([]);
+});
+
 test("numbers lose their weight and pictures fade after a drag until the new ones are there", async ({ lab, page }) => {
   const requests = await holdRequests(page);
   const parts = [page.locator(".learn-figure .learn-numbers"), page.locator(".learn-figure .learn-panels")];
@@ -151,6 +186,33 @@ test("no formula gives the plain normal to a 4 by 4 matrix, and no symbol has a 
     expect(await page.locator(".learn-text mo").allTextContents(), id).not.toEqual(expect.arrayContaining(["^"]));
   }
   expect(count).toBeGreaterThan(5);
+  expect(lab.complaints).toEqual([]);
+});
+
+test("4: strips and surface fit their frame together, from every side", async ({ lab, page }) => {
+  for (const state of ["at=strips", "at=strips&dent=1"]) {
+    await open(page, state);
+    const panel = page.locator('[data-panel="cloud"]');
+    const canvas = panel.locator("canvas");
+    const drawnAt = () =>
+      canvas.evaluate((each: HTMLCanvasElement) => {
+        const { width, height } = each;
+        const { data } = each.getContext("2d")?.getImageData(0, 0, width, height) ?? { data: [] };
+        const points = Array.from({ length: width * height }, (_, at) => at).filter((at) => data[4 * at + 3] !== 0);
+        const isAtEdge = (at: number) => {
+          const [x, y] = [at % width, Math.floor(at / width)];
+          return Math.min(x, y, width - 1 - x, height - 1 - y) < 2;
+        };
+        return { all: points.length, cut: points.filter(isAtEdge).length };
+      });
+    const first = await drawnAt();
+    expect(first.all, state).toBeGreaterThan(1000);
+    expect(first.cut, state).toBe(0);
+    for (const turn of [-90, -50, 0, 90]) {
+      await panel.locator("input").fill(String(turn));
+      expect((await drawnAt()).cut, `${state}, turned by ${turn}°`).toBe(0);
+    }
+  }
   expect(lab.complaints).toEqual([]);
 });
 

@@ -228,8 +228,9 @@ test("Home and End lead to the first and the last slide of the choice, and B bla
   await expect(at("pose")).toBeVisible();
   await page.keyboard.press("Home");
   await expect(at("lambert")).toBeVisible();
+  const dialog = page.locator("dialog.learn-slides");
   const cover = () =>
-    page.locator("dialog.learn-slides").evaluate((each) => {
+    dialog.evaluate((each) => {
       const { content, backgroundColor, position } = getComputedStyle(each, "::after");
       return content === "none" ? "none" : `${position} ${backgroundColor}`;
     });
@@ -238,10 +239,27 @@ test("Home and End lead to the first and the last slide of the choice, and B bla
   expect(await cover()).toBe("fixed rgb(0, 0, 0)");
   await page.keyboard.press("b");
   expect(await cover()).toBe("none");
-  await page.keyboard.press("b");
+  // A presenter's clicker sends a point. The first key on a black screen only wakes it.
+  await page.keyboard.press(".");
+  expect(await cover()).toBe("fixed rgb(0, 0, 0)");
+  await page.keyboard.press("ArrowRight");
+  expect(await cover()).toBe("none");
+  await expect(at("lambert")).toBeVisible();
   await page.keyboard.press("ArrowRight");
   await expect(at("grey")).toBeVisible();
+  await page.keyboard.press("b");
+  await page.keyboard.press("Escape");
+  await expect(dialog).toBeVisible();
   expect(await cover()).toBe("none");
+  // In a number that is being typed, the point is a part of it.
+  await page.keyboard.press("q");
+  await page.keyboard.type("1.5");
+  await expect(dialog.locator("[data-asked] input")).toHaveValue("1.5");
+  expect(await cover()).toBe("none");
+  await page.keyboard.press("ControlOrMeta+A");
+  await page.keyboard.press("Delete");
+  await page.keyboard.press(".");
+  expect(await cover()).toBe("fixed rgb(0, 0, 0)");
   expect(lab.complaints).toEqual([]);
 });
 

@@ -1,4 +1,4 @@
-/** Whether the answers of guesses and exercises are hidden, as a link can ask. A button and a key show them and hide them again. */
+/** Whether the answers of guesses and exercises are hidden, as a link can ask. A button shows them and hides them again. */
 
 import { make } from "../dom";
 import { phrase } from "../words";
@@ -31,13 +31,13 @@ export class Answers {
     this.#onChange();
   }
 
-  /** Both labels are in the document, and the style sheet shows one of them. `key` is a key that does the same. */
-  button(key = ""): HTMLButtonElement {
+  /** Both labels are in the document, and the style sheet shows one of them. */
+  button(): HTMLButtonElement {
     const button = make(
       "button",
       { type: "button", class: "learn-answers" },
-      make("span", { class: "when-hidden" }, phrase("answers.show", "Show answers"), key),
-      make("span", { class: "when-shown" }, phrase("answers.hide", "Hide answers"), key),
+      make("span", { class: "when-hidden" }, phrase("answers.show", "Show answers")),
+      make("span", { class: "when-shown" }, phrase("answers.hide", "Hide answers")),
     );
     button.addEventListener("click", () => this.toggle());
     return button;

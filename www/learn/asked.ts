@@ -13,6 +13,8 @@ export interface Form {
   element: HTMLElement;
   /** Puts the question, without an earlier guess, or takes it away. */
   ask(isAsked: boolean): void;
+  /** Shows the answer, or takes it away and returns the figure to the state of the question. */
+  answer(): void;
 }
 
 const settings = (address: string) => new URLSearchParams(address.replace(/^#/, ""));
@@ -40,11 +42,15 @@ function formOf({ title, question, links, answer }: Exercise, lesson: Lesson, se
     make("p", { class: "learn-links" }, ...states),
     details,
   );
+  const open = (isOpen: boolean) => {
+    details.open = isOpen;
+    element.toggleAttribute("data-open", isOpen);
+  };
   const ask = (isNow: boolean) => {
     element.toggleAttribute("data-asked", isNow);
-    details.open = false;
+    open(false);
     const [first] = links;
     if (isNow && first) show(first[0]);
   };
-  return { element, ask };
+  return { element, ask, answer: () => open(!details.open) };
 }

@@ -67,10 +67,8 @@ export class Cloud {
     const context = this.#canvas.getContext("2d");
     const panel = this.#panel;
     if (!context || !panel) return;
-    const [first] = panel.sets;
-    if (!first) return;
     context.clearRect(0, 0, SIDE, SIDE);
-    const { middle, reach } = extent(first.points);
+    const { middle, reach } = extent(panel.sets.map(({ points }) => points));
     const angle = (this.#turn.valueAsNumber * Math.PI) / 180;
     const [c, s] = [Math.cos(angle), Math.sin(angle)];
     const scale = (0.46 * SIDE) / reach;
@@ -92,16 +90,26 @@ export class Cloud {
   }
 }
 
-/** Middle of a cloud's box and half of its longest side. */
-function extent(points: Float32Array): { middle: number[]; reach: number } {
-  const boxes = [0, 1, 2].map((axis) => {
+/** Middle of the clouds' common box, and how far they reach from it in a view from any side. */
+function extent(clouds: Float32Array[]): { middle: number[]; reach: number } {
+  const middle = [0, 1, 2].map((axis) => {
     let [least, most] = [Infinity, -Infinity];
-    for (let at = axis; at < points.length; at += 3) {
-      const value = points[at] ?? NaN;
-      if (value < least) least = value;
-      if (value > most) most = value;
-    }
-    return most >= least ? [(least + most) / 2, (most - least) / 2] : [0, 1];
+    for (const points of clouds)
+      for (let at = axis; at < points.length; at += 3) {
+        const value = points[at] ?? NaN;
+        if (value < least) least = value;
+        if (value > most) most = value;
+      }
+    return most >= least ? (least + most) / 2 : 0;
   });
-  return { middle: boxes.map(([middle]) => middle ?? 0), reach: Math.max(...boxes.map(([, half]) => half ?? 1), 1e-6) };
+  const [x = 0, y = 0, z = 0] = middle;
+  let reach = 1e-6;
+  for (const points of clouds)
+    for (let at = 0; at < points.length; at += 3) {
+      const aside = Math.hypot((points[at] ?? NaN) - x, (points[at + 2] ?? NaN) - z);
+      const down = Math.abs((points[at + 1] ?? NaN) - y);
+      if (aside > reach) reach = aside;
+      if (down > reach) reach = down;
+    }
+  return { middle, reach };
 }

@@ -60,6 +60,14 @@ export class Figure {
     }
   }
 
+  /** Shows a state that is earlier than the present one, but new enough for the delay before it fades to begin again. */
+  follow(drawing: Drawing): void {
+    this.show(drawing);
+    // A transition begins only where the browser has computed the styles in between.
+    this.element.getBoundingClientRect();
+    this.wait();
+  }
+
   #make(panel: Panel): Widget {
     switch (panel.kind) {
       case "image":

@@ -11,6 +11,8 @@ import type { Drawing, Values } from "./protocol";
 interface Hooks {
   /** Sets the state that a question is about. */
   set(values: Values): void;
+  /** The present state. */
+  values(): Values;
   /** Reveals the answer; `last` is called just before the figure goes to its last state, whose drawing may be known. */
   reveal(what: Try, last: () => void): void;
   /** Whether answers are hidden at present. */
@@ -32,6 +34,10 @@ export class Guesses {
   #waiting: ((drawing: Drawing, values: Values) => void) | undefined;
   /** Reveals the answer to the last guess that was made while answers were hidden. */
   #held: (() => void) | undefined;
+  /** The question on a slide. */
+  #asked: Form | undefined;
+  /** The state of the figure before the first question on a slide. */
+  #before: Values | undefined;
 
   constructor(lesson: Lesson, hooks: Hooks) {
     this.#hooks = hooks;
@@ -47,11 +53,27 @@ export class Guesses {
     ];
   }
 
-  /** Puts one question or exercise on a slide, or none. */
+  /** The state in which a slide was before its questions, while one of them is asked. */
+  get before(): Values | undefined {
+    return this.#before;
+  }
+
+  /** Puts one question or exercise on a slide, or none. After the questions the figure returns to the state that the lecturer prepared. */
   ask(index: number | undefined): void {
     this.#held = undefined;
-    this.#forms.forEach((form, at) => form.ask(at === index));
+    this.#waiting = undefined;
+    const before = (this.#before ??= index === undefined ? undefined : this.#hooks.values());
+    this.#asked = index === undefined ? undefined : this.#forms[index];
+    for (const form of this.#forms) form.ask(form === this.#asked);
     this.#hooks.cover(index === undefined ? undefined : this.#guesses[index]?.covers);
+    if (this.#asked) return;
+    this.#before = undefined;
+    if (before) this.#hooks.set(before);
+  }
+
+  /** Shows the answer of the question on a slide, or takes it away. */
+  answer(): void {
+    this.#asked?.answer();
   }
 
   /** Answers are no longer hidden. */
@@ -67,25 +89,14 @@ export class Guesses {
   }
 
   #form(guess: Guess): Form {
-    const answer = make("p", { class: "learn-answer", role: "status" });
-    const noted = make("p", { class: "soft learn-noted", "aria-live": "polite" });
-    const compare = make("button", { type: "submit", disabled: true }, phrase("guess.compare", "Compare"));
-    const field = guess.choices ? choicesOf(guess.choices) : numberOf(guess);
-    const form = make(
-      "form",
-      { class: "learn-guess" },
-      make("p", { class: "soft learn-guess-head" }, phrase("guess", "Predict, then look")),
-      make("fieldset", {}, make("legend", {}, ...sentence(guess.question)), field.element),
-      compare,
-      noted,
-      answer,
-    );
+    const { form, field, compare, noted, answer } = partsOf(guess);
     const empty = () => {
       noted.replaceChildren();
       answer.replaceChildren();
     };
-    const reveal = (given: number) => {
+    const reveal = (given: number | undefined) => {
       empty();
+      form.toggleAttribute("data-open", true);
       this.#hooks.cover(undefined);
       // A search takes seconds.
       noted.append(phrase("figure.computing", "Computing"));
@@ -94,7 +105,8 @@ export class Guesses {
       this.#hooks.reveal(guess.reveal, () => {
         this.#waiting = (drawing, values) => {
           noted.replaceChildren();
-          answer.dataset.right = String(isRight(guess, given, drawing, values));
+          if (given === undefined) delete answer.dataset.right;
+          else answer.dataset.right = String(isRight(guess, given, drawing, values));
           answer.replaceChildren(...verdict(guess, given, drawing, values));
         };
       });
@@ -110,22 +122,49 @@ export class Guesses {
       event.preventDefault();
       const given = field.value();
       if (given === undefined) return;
-      if (!this.#hooks.areHidden()) return reveal(given);
+      // On a slide the lecturer may have shown this answer.
+      if (!this.#hooks.areHidden() || form.matches("[data-asked][data-open]")) return reveal(given);
       empty();
       noted.append(phrase("guess.noted", "Your guess is noted. The answer is still hidden."));
       this.#held = () => reveal(given);
     });
     const ask = (isNow: boolean) => {
       form.toggleAttribute("data-asked", isNow);
+      form.removeAttribute("data-open");
+      empty();
       if (!isNow) return;
       form.reset();
-      empty();
       compare.disabled = true;
       isAsked = true;
       this.#hooks.set(guess.at);
     };
-    return { element: form, ask };
+    const toggle = () => {
+      if (!form.hasAttribute("data-open")) return reveal(field.value());
+      form.removeAttribute("data-open");
+      empty();
+      this.#waiting = undefined;
+      this.#hooks.cover(guess.covers);
+      this.#hooks.set(guess.at);
+    };
+    return { element: form, ask, answer: toggle };
   }
+}
+
+function partsOf(guess: Guess) {
+  const answer = make("p", { class: "learn-answer", role: "status" });
+  const noted = make("p", { class: "soft learn-noted", "aria-live": "polite" });
+  const compare = make("button", { type: "submit", disabled: true }, phrase("guess.compare", "Compare"));
+  const field = guess.choices ? choicesOf(guess.choices) : numberOf(guess);
+  const form = make(
+    "form",
+    { class: "learn-guess" },
+    make("p", { class: "soft learn-guess-head" }, phrase("guess", "Predict, then look")),
+    make("fieldset", {}, make("legend", {}, ...sentence(guess.question)), field.element),
+    compare,
+    noted,
+    answer,
+  );
+  return { form, field, compare, noted, answer };
 }
 
 interface Field {
@@ -171,7 +210,9 @@ function isRight(guess: Guess, given: number, drawing: Drawing, values: Values):
   return Math.abs(given - numberShown(guess, drawing, values)) <= (guess.number?.within ?? 0);
 }
 
-function verdict(guess: Guess, given: number, drawing: Drawing, values: Values): (Node | string)[] {
+/** The answer; with a guess, what it was and whether it is right. */
+function verdict(guess: Guess, given: number | undefined, drawing: Drawing, values: Values): (Node | string)[] {
+  if (given === undefined) return sentence(guess.answer);
   const good = isRight(guess, given, drawing, values);
   const shows = numberShown(guess, drawing, values);
   const { digits = 0, unit } = guess.number ?? {};
@@ -182,12 +223,9 @@ function verdict(guess: Guess, given: number, drawing: Drawing, values: Values):
       ? phrase("guess.right", "Right.")
       : phrase("guess.near", "Close.")
     : phrase("guess.wrong", "Not quite.");
-  const figure = guess.number
-    ? ` ${phrase("guess.shows", "The figure shows {number}.", { number: withUnit(decimals(near, digits), unit?.trim()) })}`
-    : "";
   const chosen = phrase("guess.chose", "You guessed: {guess}.", { guess: said });
   // The answer to a right choice begins with that choice. On a slide the choice is still in view.
   const words =
     good && guess.choices ? [] : [make("span", { class: guess.choices ? "learn-chose" : undefined }, ` ${chosen}`)];
-  return [make("strong", {}, head), ...words, `${figure} `, ...sentence(guess.answer)];
+  return [make("strong", {}, head), ...words, " ", ...sentence(guess.answer)];
 }

@@ -59,6 +59,7 @@ interface Shown {
 export class LearnPage {
   readonly #session = new Session({
     onDrawing: (drawing, done) => this.#draw(drawing, done),
+    onEarlier: (drawing) => this.#follow(drawing),
     onFault: ({ message }) => this.#complain(message),
   });
   readonly #ahead = new Ahead();
@@ -106,7 +107,7 @@ export class LearnPage {
     );
     this.#answers = new Answers(parent, () => this.#toggleAnswers());
     this.#exercises = exerciseList(this.#answers.button());
-    this.#slides = new Slides(this.#answers, {
+    this.#slides = new Slides({
       turn: (by) => this.#turn(by),
       jump: (id) => this.#turnTo(id),
       choose: (chosen) => this.#choose(chosen),
@@ -255,7 +256,11 @@ export class LearnPage {
     const embed = new Embed(titleOf(lesson));
     box.append(embed.source);
     const guesses = new Guesses(lesson, {
-      set: (at) => controls.set(at),
+      set: (at) => {
+        player.stop();
+        controls.set(at);
+      },
+      values: () => controls.values,
       areHidden: () => this.#answers.areHidden,
       cover: (panel) => (box.dataset.covers = panel ?? ""),
       reveal: (what, last) => {
@@ -337,6 +342,16 @@ export class LearnPage {
     if (done && this.#slides.isOpen) this.#prepare(shown, drawing);
   }
 
+  /** Pictures and numbers follow a drag, marked as earlier ones. */
+  #follow(drawing: Drawing): void {
+    const shown = this.#shown;
+    if (!shown) return;
+    const inWords = drawingIn(shown.lesson.id, drawing);
+    shown.figure.follow(inWords);
+    shown.readouts.show(inWords);
+    shown.readouts.wait();
+  }
+
   /** The next slide is computed while this one is looked at. */
   #prepare({ lesson, controls }: Shown, drawing: Drawing): void {
     this.#ahead.keep(lesson, controls.values, drawing);
@@ -364,9 +379,19 @@ export class LearnPage {
   #turnTo(id: LessonId): void {
     const lesson = lessonNamed(id);
     if (!lesson) return;
+    this.#recall();
     // Before the lesson is shown, because that writes the address of its values.
     this.#writeAddress("another");
     this.#show(lesson, this.#kept.of(lesson));
+    this.#writeAddress();
+  }
+
+  /** A slide that is left at a question is found again in the state from before its questions. */
+  #recall(): void {
+    const { lesson, guesses } = this.#shown ?? {};
+    if (!lesson || !guesses?.before) return;
+    this.#kept.keep(lesson, guesses.before);
+    this.#point(lesson.id);
     this.#writeAddress();
   }
 
@@ -385,14 +410,14 @@ export class LearnPage {
   }
 
   #slideOf({ article, lesson: { id, title }, guesses }: Shown): Slide {
-    const ask = (index: number | undefined) => guesses.ask(index);
-    return { article, id, title, chosen: this.#chosen, questions: guesses.names, asksFirst: this.#asksFirst, ask };
+    return { article, id, title, guesses, chosen: this.#chosen, asksFirst: this.#asksFirst };
   }
 
   #endSlides(): void {
     const shown = this.#shown;
     if (!shown || !this.#isOpen) return;
     this.#main.replaceChildren(shown.article);
+    shown.guesses.ask(undefined);
     shown.article.querySelector("h2")?.focus();
     this.#writeAddress();
   }

@@ -8,12 +8,16 @@ import { startThread } from "./thread";
 
 export interface Hooks {
   onDrawing(drawing: Drawing, done: boolean): void;
+  /** A drawing of values before the present ones, as a drag leaves many behind. */
+  onEarlier?(drawing: Drawing): void;
   onFault(fault: Fault): void;
 }
 
 export class Session {
   #worker: Worker | undefined;
   #next = 0;
+  /** Answers up to this request are no longer wanted. */
+  #forgotten = 0;
   /** The lesson whose request is under way. */
   #busy: LessonId | undefined;
   readonly #hooks: Hooks;
@@ -33,7 +37,7 @@ export class Session {
 
   /** The answer to the request under way is no longer wanted. */
   forget(): void {
-    this.#next++;
+    this.#forgotten = ++this.#next;
   }
 
   /** Ends the request under way, which is obsolete. */
@@ -57,8 +61,10 @@ export class Session {
         });
     });
     worker.onmessage = (event: MessageEvent<Answer>) => {
-      // Earlier requests are obsolete.
-      if (worker === this.#worker && event.data.id === this.#next) this.#receive(event.data);
+      const { data } = event;
+      if (worker !== this.#worker || data.id <= this.#forgotten) return;
+      if (data.id === this.#next) this.#receive(data);
+      else if ("drawing" in data) this.#hooks.onEarlier?.(data.drawing);
     };
     worker.onerror = (event) => {
       event.preventDefault();

@@ -2,8 +2,8 @@
 
 import { make } from "../dom";
 import { phrase } from "../words";
-import type { Answers } from "./answers";
 import type { Chosen } from "./chosen";
+import type { Guesses } from "./guesses";
 import { Overview, type OverviewHooks } from "./overview";
 import type { LessonId } from "./protocol";
 
@@ -13,6 +13,8 @@ const LEAST_PANEL = 0.405;
 const MOVED_BY_ARROWS = "input:not([type=checkbox]), select, textarea";
 /** Elements in which letters choose an option. A field for a number takes no letter that is a command. */
 const TAKES_LETTERS = "select";
+/** Elements to which the Enter key belongs. */
+const TAKES_ENTER = "button, a, summary, input, select, textarea";
 /** Elements that keep the focus after a press of the pointer and would then take the arrow keys. */
 const KEEPS_FOCUS = "input:is([type=range], [type=radio]), label";
 
@@ -22,12 +24,10 @@ export interface Slide {
   title: string;
   /** The slides of the show, in their order. */
   chosen: Chosen;
-  /** What the button for the next question says before each of the lesson's questions. */
-  questions: readonly string[];
+  /** The questions, which take the place of the lesson's sentence. */
+  guesses: Guesses;
   /** Whether the slide begins with its first question. */
   asksFirst: boolean;
-  /** Puts a question in the place of the lesson's sentence; with none, the sentence returns. */
-  ask(index: number | undefined): void;
 }
 
 export interface SlidesHooks extends OverviewHooks {
@@ -42,13 +42,14 @@ export class Slides {
   readonly #question = make("button", { type: "button" });
   readonly #overview: Overview;
   readonly #hooks: SlidesHooks;
-  readonly #answers: Answers;
+  readonly #answer = make("button", { type: "button" }, `${phrase("answer", "Answer")} (A)`);
   #slide: Slide | undefined;
   #asked: number | undefined;
   #chosen: Chosen = [];
+  /** What the pointer pressed, if no key has been pressed since. */
+  #pressed: EventTarget | null = null;
 
-  constructor(answers: Answers, hooks: SlidesHooks) {
-    this.#answers = answers;
+  constructor(hooks: SlidesHooks) {
     this.#hooks = hooks;
     this.#overview = new Overview(hooks);
     this.#turns = (
@@ -66,6 +67,11 @@ export class Slides {
     // After a press of the pointer the arrow keys turn slides again; a control that the Tab key reached keeps them.
     this.element.addEventListener("click", ({ target, detail }) => {
       if (detail > 0 && target instanceof Element && target.matches(KEEPS_FOCUS)) this.#focus();
+    });
+    // A list that the pointer opened keeps the focus until its choice is made.
+    this.element.addEventListener("pointerdown", ({ target }) => (this.#pressed = target));
+    this.element.addEventListener("change", ({ target }) => {
+      if (target === this.#pressed && target instanceof HTMLSelectElement) this.#focus();
     });
     // After a typed guess the keys are commands again.
     this.element.addEventListener("submit", () => this.#focus());
@@ -88,8 +94,8 @@ export class Slides {
     const [previous, next] = this.#turns.map(({ button }) => button);
     const count = [this.#overview.button, this.#overview.element];
     const turning = [previous, ...count, next].filter((each) => each !== undefined);
-    const answers = this.#answers.button(" (A)");
-    return make("div", { class: "learn-slide-bar" }, ...turning, this.#question, answers, whole, close);
+    this.#answer.addEventListener("click", () => this.#slide?.guesses.answer());
+    return make("div", { class: "learn-slide-bar" }, ...turning, this.#question, this.#answer, whole, close);
   }
 
   get isOpen(): boolean {
@@ -137,7 +143,7 @@ export class Slides {
   /** The next question of the slide; after the last one, none. */
   get #next(): number | undefined {
     const next = (this.#asked ?? -1) + 1;
-    return next < (this.#slide?.questions.length ?? 0) ? next : undefined;
+    return next < (this.#slide?.guesses.names.length ?? 0) ? next : undefined;
   }
 
   #ask(): void {
@@ -149,10 +155,11 @@ export class Slides {
 
   #put(index: number | undefined): void {
     this.#asked = index;
+    this.#answer.hidden = index === undefined;
     const next = this.#next;
     const sentence = phrase("slides.sentence", "Sentence (Q)");
-    this.#question.textContent = (next === undefined ? undefined : this.#slide?.questions[next]) ?? sentence;
-    this.#slide?.ask(index);
+    this.#question.textContent = (next === undefined ? undefined : this.#slide?.guesses.names[next]) ?? sentence;
+    this.#slide?.guesses.ask(index);
   }
 
   /**
@@ -163,15 +170,6 @@ export class Slides {
     this.#holder.removeAttribute("data-terse");
     const { clientHeight = 0 } = this.#holder.querySelector(".learn-panel") ?? {};
     this.#holder.toggleAttribute("data-terse", clientHeight < LEAST_PANEL * this.#holder.clientHeight);
-  }
-
-  /** At an exercise, opens its answer or closes it; elsewhere, shows all answers or hides them. */
-  #answer(): void {
-    const fold = this.#holder.querySelector<HTMLDetailsElement>(".learn-asked[data-asked] details");
-    if (!fold) return this.#answers.toggle();
-    const isOpen = fold.open && !this.#answers.areHidden;
-    if (this.#answers.areHidden) this.#answers.toggle();
-    fold.open = !isOpen;
   }
 
   /** The page as a whole, because no browser gives the screen to a dialog. Where it refuses, the slide stays in the window. */
@@ -187,13 +185,15 @@ export class Slides {
 
   #key(event: KeyboardEvent): void {
     if (event.altKey || event.ctrlKey || event.metaKey) return;
-    const wasBlank = this.element.hasAttribute("data-blank");
-    this.#blank(false);
+    this.#pressed = null;
+    if (this.element.hasAttribute("data-blank")) return this.#wake(event);
     const within = (selector: string) => event.target instanceof Element && event.target.closest(selector) !== null;
-    if (!within(TAKES_LETTERS) && this.#command(event, wasBlank)) return event.preventDefault();
-    const isEmpty =
-      event.target instanceof HTMLInputElement && event.target.matches("[type=number]") && !event.target.value;
-    if (/^(Arrow|Home|End)/.test(event.key) && within(MOVED_BY_ARROWS) && !isEmpty) return;
+    const isNumber = event.target instanceof HTMLInputElement && event.target.matches("[type=number]");
+    const isTyped = isNumber && (event.target.value !== "" || event.target.validity.badInput);
+    const isPoint = event.key === "." && isTyped;
+    if (!within(TAKES_LETTERS) && !isPoint && this.#command(event)) return event.preventDefault();
+    if (event.key === "Enter" && !within(TAKES_ENTER)) return this.#compare();
+    if (/^(Arrow|Home|End)/.test(event.key) && within(MOVED_BY_ARROWS) && (isTyped || !isNumber)) return;
     const end = { Home: this.#chosen[0], End: this.#chosen.at(-1) }[event.key];
     const by = { ArrowRight: 1, PageDown: 1, ArrowLeft: -1, PageUp: -1 }[event.key] as 1 | -1 | undefined;
     if (end === undefined && by === undefined) return;
@@ -202,13 +202,24 @@ export class Slides {
     else if (end !== undefined && end !== this.#slide?.id) this.#hooks.jump(end);
   }
 
-  /** Whether the key is a command's letter. */
-  #command({ key, repeat }: KeyboardEvent, wasBlank: boolean): boolean {
+  /** The first key on a black screen does nothing else. A key that is held down since then is not another one. */
+  #wake(event: KeyboardEvent): void {
+    event.preventDefault();
+    if (!event.repeat) this.#blank(false);
+  }
+
+  #compare(): void {
+    this.#holder.querySelector<HTMLFormElement>(".learn-guess[data-asked]")?.requestSubmit();
+  }
+
+  /** Whether the key is a command's. */
+  #command({ key, repeat }: KeyboardEvent): boolean {
     const commands: Record<string, () => void> = {
       f: () => this.#fill(),
       q: () => this.#ask(),
-      a: () => this.#answer(),
-      b: () => this.#blank(!wasBlank),
+      a: () => this.#slide?.guesses.answer(),
+      b: () => this.#blank(true),
+      ".": () => this.#blank(true),
     };
     const run = commands[key];
     if (!repeat) run?.();

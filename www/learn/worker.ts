@@ -73,9 +73,9 @@ async function answer({ id, lesson, values }: Request): Promise<void> {
       last = drawing;
       await breathe();
       if (newest?.id !== id) {
-        // Ends the generator, which frees its estimators.
+        // Ends the generator, which frees its estimators. The figure follows a drag with what is drawn.
         drawings.return(undefined);
-        return;
+        return post({ id, drawing, done: false });
       }
     }
     if (last) post({ id, drawing: last, done: true });
