@@ -26,7 +26,7 @@ export const GALLERY = [
   {
     kind: "cut",
     name: "Half a vase",
-    shows: "The depth camera sees one half of the vase. The pose is three degrees off, and the status says that it is uncertain.",
+    shows: "The depth camera sees one half of the vase. The pose is three degrees off and called uncertain.",
     level: "medium",
     ends: { status: "ambiguous", degrees: 3.4, millimetres: 62 },
   },
