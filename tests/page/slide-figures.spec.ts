@@ -118,9 +118,16 @@ test("a slide lists the symbols of its formula if the pictures stay large", asyn
   }
   await page.keyboard.press("q");
   await expect(symbols).toBeHidden();
-  // Eight symbols would take three lines from four pictures.
+  // Eight symbols would take three lines from four pictures. They appear over the controls while the formula is pointed at or focused.
   await open(page, "at=strips&slides");
   await expect(symbols).toBeHidden();
+  const formula = page.locator(".learn-slide .learn-formula");
+  await formula.hover();
+  await expect(symbols).toBeVisible();
+  await page.mouse.move(0, 0);
+  await expect(symbols).toBeHidden();
+  await formula.focus();
+  await expect(symbols).toBeVisible();
 });
 
 test("pictures of slides take the room that is free", LONG, async ({ page }) => {

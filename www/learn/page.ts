@@ -8,6 +8,7 @@ import "../style/learn-marks.css";
 import "../style/learn-blank.css";
 import "../style/learn-print.css";
 import "../style/learn-slides.css";
+import "../style/learn-symbols.css";
 import { make } from "../dom";
 import { saveJson } from "../save";
 import { phrase } from "../words";
