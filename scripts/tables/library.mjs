@@ -6,7 +6,7 @@ import { inRoot } from "../shell.mjs";
 import { readHeights } from "./npy.mjs";
 
 const DATA = inRoot("../shared/data");
-/** Rows of `natural_lights_114.csv`: an easy, a median and a hard one. */
+/** Numbers in the first column of `natural_lights_114.csv`: an easy, a median and a hard one. */
 const NATURAL_LIGHTS = { A: 132, B: 214, C: 144 };
 /** Side of a relief, and the length that an object of `mit_berkeley` spans in the relief, samples. */
 const RELIEF_SIDE = 256;
