@@ -160,9 +160,9 @@ describe("batch.mjs", () => {
       writeFileSync(join(pairs, second), depth);
     };
     // Two naming schemes.
-    for (const beta of [0, 10]) await add([`colour/${beta}.png`, `depth/${beta}.npy`], { angles: { beta }, size: 48 });
+    for (const beta of [0, 10]) await add([`colour/${beta}.png`, `depth/${beta}.npy`], { angles: { beta }, size: 64 });
     for (const beta of [20, 30])
-      await add([`view ${beta}-rgb.png`, `view ${beta}-depth.npy`], { angles: { beta }, size: 48 });
+      await add([`view ${beta}-rgb.png`, `view ${beta}-depth.npy`], { angles: { beta }, size: 64 });
     // This pair comes after the first one and takes far longer than an interruption.
     await add(LARGE, { size: 512 });
     writeFileSync(join(pairs, 'bad, "cut"-colour.png'), "no picture");

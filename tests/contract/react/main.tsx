@@ -20,7 +20,7 @@ Estimator.prototype.free = function () {
 
 await init();
 /** The first pair takes far longer than a click; no pair is shown between the two. */
-const pairs = [256, undefined, 48].map((size) => (size ? sample({ surface: "bust", light: "window", size }) : undefined));
+const pairs = [256, undefined, 64].map((size) => (size ? sample({ surface: "bust", light: "window", size }) : undefined));
 
 function App() {
   const [turn, setTurn] = useState(0);
