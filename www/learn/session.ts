@@ -6,6 +6,12 @@ import { phrase } from "../words";
 import type { Answer, Drawing, LessonId, Request, Values } from "./protocol";
 import { startThread } from "./thread";
 
+/**
+ * Least time between two earlier drawings, milliseconds: so often that pictures do not turn pale during a drag, and so rarely that drawing
+ * them leaves time to the slider.
+ */
+const FOLLOWS_EVERY = 250;
+
 export interface Hooks {
   onDrawing(drawing: Drawing, done: boolean): void;
   /** A drawing of values before the present ones, as a drag leaves many behind. */
@@ -16,6 +22,8 @@ export interface Hooks {
 export class Session {
   #worker: Worker | undefined;
   #next = 0;
+  /** When an earlier drawing was last shown, milliseconds. */
+  #followed = 0;
   /** Answers up to this request are no longer wanted. */
   #forgotten = 0;
   /** The lesson whose request is under way. */
@@ -64,7 +72,10 @@ export class Session {
       const { data } = event;
       if (worker !== this.#worker || data.id <= this.#forgotten) return;
       if (data.id === this.#next) this.#receive(data);
-      else if ("drawing" in data) this.#hooks.onEarlier?.(data.drawing);
+      else if ("drawing" in data && performance.now() - this.#followed > FOLLOWS_EVERY) {
+        this.#followed = performance.now();
+        this.#hooks.onEarlier?.(data.drawing);
+      }
     };
     worker.onerror = (event) => {
       event.preventDefault();
