@@ -299,8 +299,9 @@ const PARTS = [
     name: "page",
     run: page,
     needsBuild: true,
-    // The names of the tests that failed follow their number.
-    closing: /^ +(?:\d+ (?:passed|failed|skipped|flaky|did not run)| {3}\[\w+\] › ).*$/gm,
+    // The names of the tests that failed follow their number. Of each, the line that failed and what it found.
+    closing:
+      /^ +(?:\d+ (?:passed|failed|skipped|flaky|did not run)| {3}\[\w+\] › |(?:Error|Expected|Received)\b.*: |> +\d+ \| ).*$/gm,
   },
 ];
 

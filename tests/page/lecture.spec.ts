@@ -362,6 +362,29 @@ test("slides are counted, chosen by a link in its order, and found in a list", a
   expect(lab.complaints).toEqual([]);
 });
 
+test("a link that is followed before the slides report their end shows its lesson alone", async ({ lab, page }) => {
+  /** Closes the slides and follows a link. The event of their end is held back until `end`. */
+  const follow = (hash: string) =>
+    page.evaluate((hash) => {
+      addEventListener("close", (event) => event.stopImmediatePropagation(), { capture: true, once: true });
+      document.querySelector<HTMLDialogElement>("dialog.learn-slides")?.close();
+      location.hash = hash;
+    }, hash);
+  const end = () => dialog(page).evaluate((each) => each.dispatchEvent(new Event("close")));
+  await open(page, "slides=grey,normal");
+  await expect(page.locator('.learn-slide [data-lesson="grey"]')).toBeVisible();
+  await follow("#learn&slides=normal,grey");
+  await expect(page.locator('.learn-slide [data-lesson="normal"]')).toBeVisible();
+  await end();
+  await expect(page.locator('.learn-slide [data-lesson="normal"]')).toBeVisible();
+  await follow("#learn&at=strips");
+  await expect(page.locator('.learn-main > [data-lesson="strips"]')).toBeVisible();
+  await end();
+  await expect(page.locator('.learn-main > [data-lesson="strips"]')).toBeVisible();
+  await expect(page.locator(".learn-lesson")).toHaveCount(1);
+  expect(lab.complaints).toEqual([]);
+});
+
 test("the page for teachers is linked from the lessons and from the help", async ({ page, say }) => {
   const teachers = /\/docs\/guide\/learn\.md$/;
   await open(page, "at=normal");

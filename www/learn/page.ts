@@ -194,6 +194,8 @@ export class LearnPage {
     } else {
       const before = this.#shown;
       before?.player.stop();
+      // Slides that have just closed still hold it.
+      before?.article.remove();
       this.#shown = this.#make(lesson, values);
       if (this.#slides.isOpen) this.#slides.take(this.#slideOf(this.#shown));
       else this.#main.replaceChildren(this.#shown.article);

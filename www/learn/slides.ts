@@ -78,6 +78,8 @@ export class Slides {
     this.element.addEventListener("click", () => this.#blank(false));
     new ResizeObserver(() => this.#explain()).observe(this.#holder);
     this.element.addEventListener("close", () => {
+      // The event comes after a link may have opened the slides again.
+      if (this.element.open) return;
       this.#blank(false);
       if (document.fullscreenElement) void document.exitFullscreen();
       hooks.close();
