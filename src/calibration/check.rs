@@ -340,12 +340,11 @@ impl CalibrationCheck {
         }
     }
 
-    /// Adopts the best reading if it fits clearly better than every pose found near the candidate.
+    /// Adopts the best reading if it fits clearly and significantly better than every pose found near the candidate.
     fn adopt(&mut self, search: Rereading, planes: Vec<Planes>) -> Stage {
         let optima = search.end(&self.scene, &planes);
-        let is_reading = optima.first().is_some_and(|best| best.reading.is_some());
         let lens = self.lens;
-        if is_reading && !optima[1..].iter().any(Optimum::is_equal) {
+        if optima::is_reading_ahead(&optima) {
             self.lens = distortion::left_out(&mut self.scene, &optima[0].round);
             let report = self.conclude(&optima[..1], &planes);
             if names_reading(&report) {

@@ -130,6 +130,11 @@ pub(super) fn rank(optima: &mut [Optimum]) {
     optima.iter_mut().for_each(|optimum| optimum.compare(&best, &weights));
 }
 
+/// Whether the best optimum is a reading, and the frames exclude all other optima.
+pub(super) fn is_reading_ahead(optima: &[Optimum]) -> bool {
+    optima.first().is_some_and(|best| best.reading.is_some()) && !optima[1..].iter().any(Optimum::is_possible)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -202,5 +207,11 @@ mod tests {
             lone[1].behind,
             lone[1].scatter
         );
+        // Nor do they tell a reading from the candidate.
+        let read = |mut optima: [Optimum; 2]| {
+            optima[0].reading = Some(Reading::Inverse);
+            is_reading_ahead(&optima)
+        };
+        assert!(!is_reading_ahead(&steady) && read(steady) && !read(lone));
     }
 }

@@ -57,6 +57,12 @@ impl Turn {
         }
     }
 
+    /// Whether the intrinsics may belong to a raster of this size after the turn: the turn must not move the middle away from
+    /// the principal point.
+    fn fits(self, camera: &Pinhole, size: Size) -> bool {
+        off_middle(camera, self.size(size)) <= off_middle(camera, size)
+    }
+
     /// Where a pixel of a raster of this size lies after the turn.
     const fn place(self, Size { width, height }: Size, (column, row): (usize, usize)) -> (usize, usize) {
         match self {
@@ -117,6 +123,9 @@ impl Reading {
         let mut read = frame.clone();
         let size = frame.planes.size;
         if let Some(turn) = self.image_turn() {
+            if !turn.fits(&frame.camera, size) {
+                return None;
+            }
             read.planes = self.planes(&frame.planes);
             if let (Some(to), Some(mask)) = (&mut read.image_mask, &frame.image_mask) {
                 to.iter_mut().zip(turn.sources(size)).for_each(|(to, from)| *to = mask[from]);
@@ -124,6 +133,9 @@ impl Reading {
             return Some(read);
         }
         if let Some(turn) = self.depth_turn() {
+            if frame.depth_camera.is_some_and(|camera| !turn.fits(&camera, frame.map)) {
+                return None;
+            }
             turn_map(turn, frame, &mut read);
         }
         match self {
@@ -195,6 +207,12 @@ fn on_ray(camera: &Pinhole, (column, row): (usize, usize), z: f32) -> [f32; 3] {
     }
 }
 
+/// Distance of the principal point from the middle of a raster of this size, as a share of the side.
+fn off_middle(camera: &Pinhole, Size { width, height }: Size) -> f64 {
+    let off = |centre: f64, side: usize| (centre - 0.5 * (side as f64 - 1.0)).abs() / side as f64;
+    off(camera.cx, width).max(off(camera.cy, height))
+}
+
 /// The size of the image to which intrinsics belong: that of a common stream, or else the one in whose middle the principal
 /// point lies.
 fn stated_size(camera: &Pinhole) -> [f64; 2] {
@@ -222,7 +240,7 @@ fn cropped(camera: &Pinhole, size: Size) -> Option<Pinhole> {
 /// intrinsics of the image itself.
 fn rescaled(camera: &Pinhole, size: Size, stated: [f64; 2], scale: f64) -> Option<Pinhole> {
     let sides = [size.width as f64, size.height as f64];
-    let is_own = (0..2).all(|k| ([camera.cx, camera.cy][k] - 0.5 * (sides[k] - 1.0)).abs() <= OFF_MIDDLE * sides[k]);
+    let is_own = off_middle(camera, size) <= OFF_MIDDLE;
     let is_valid = scale.is_finite() && scale > 0.0;
     let centre = |k: usize, own: f64| scale * (own + 0.5) + 0.5 * (sides[k] - scale * stated[k]) - 0.5;
     let [cx, cy] = [centre(0, camera.cx), centre(1, camera.cy)];
@@ -241,20 +259,26 @@ mod tests {
         Pinhole { fx: 10.0, fy: 10.0, cx: 5.5, cy: 3.5, lens: Lens::None }
     }
 
-    /// A frame whose image and depth map name their pixels.
-    fn frame() -> Frame {
+    /// A frame whose image and depth map name their pixels, both seen by one camera.
+    fn frame_of(camera: Pinhole) -> Frame {
         let pixels = (0..SIZE.len()).map(|index| [index as f32; 3]).collect();
         let planes = Planes { size: SIZE, pixels };
         let points =
-            (0..SIZE.len()).map(|index| on_ray(&camera(), SIZE.position(index), 0.5 + 0.01 * index as f32)).collect();
-        let mut frame = Frame::new(String::new(), planes, camera(), SIZE, points);
-        frame.depth_camera = Some(camera());
+            (0..SIZE.len()).map(|index| on_ray(&camera, SIZE.position(index), 0.5 + 0.01 * index as f32)).collect();
+        let mut frame = Frame::new(String::new(), planes, camera, SIZE, points);
+        frame.depth_camera = Some(camera);
         frame.image_mask = Some((0..SIZE.len()).map(|index| index == 5).collect());
         frame
     }
 
+    fn frame() -> Frame {
+        frame_of(camera())
+    }
+
     #[test]
     fn four_quarters_are_a_whole_turn_and_a_quarter_is_undone_by_the_other() {
+        // Its principal point is as far from the middle of a raster of 12 by 8 as from that of one of 8 by 12.
+        let frame = || frame_of(Pinhole { cx: 4.5, cy: 4.5, ..camera() });
         let is_same = |a: &Frame, b: &Frame| {
             assert_eq!((a.planes.size, a.grid, a.map), (b.planes.size, b.grid, b.map));
             assert_eq!(a.planes.pixels, b.planes.pixels);
@@ -277,6 +301,22 @@ mod tests {
         let restored = Reading::ImageQuarterTurn.frame(&frame()).unwrap();
         assert_eq!(restored.planes.size, Size { width: 8, height: 12 });
         assert_eq!(restored.planes.pixels[0][0], 11.0);
+    }
+
+    #[test]
+    fn a_quarter_turn_that_moves_the_principal_point_away_from_the_middle_is_no_reading() {
+        let of_image = [Reading::ImageQuarterTurn, Reading::ImageQuarterBack];
+        let of_depth = [Reading::DepthQuarterTurn, Reading::DepthQuarterBack];
+        let applies = |frame: &Frame, readings: [Reading; 2]| readings.map(|reading| reading.frame(frame).is_some());
+        // The intrinsics of an image of 8 by 12, from before it was turned.
+        let stored = Pinhole { cx: 3.5, cy: 5.5, ..camera() };
+        let mut turned = frame();
+        turned.camera = stored;
+        assert_eq!((applies(&turned, of_image), applies(&turned, of_depth)), ([true; 2], [false; 2]));
+        turned.depth_camera = Some(stored);
+        assert_eq!((applies(&frame(), of_image), applies(&turned, of_depth)), ([false; 2], [true; 2]));
+        // Halves and mirrors keep the size.
+        assert!(Reading::ImageHalfTurn.frame(&frame()).is_some() && Reading::DepthMirrored.frame(&frame()).is_some());
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The search over other readings of a candidate that does not pass.
 //!
 //! Each reading is registered from its own pose with a prior about that pose, level by level, and the worst drop out. The
-//! best has to fit clearly better than every pose found near the candidate itself.
+//! best is adopted only if the frames exclude every pose found near the candidate itself.
 
 use super::optima::{self, Optimum};
 use super::planes::Planes;
