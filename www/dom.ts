@@ -51,6 +51,13 @@ export function dipInto(root: ShadowRoot): void {
 /** To be called when the theme changes, before anything is drawn in the new colours. */
 export const forgetInks = (): void => inks.clear();
 
+/** Calls back when a dialog has closed, except if it has been opened again before the browser reports its end. */
+export function onClosed(dialog: HTMLDialogElement, listen: () => void): void {
+  dialog.addEventListener("close", () => {
+    if (!dialog.open) listen();
+  });
+}
+
 let counter = 0;
 /** An id that is unique on the page. */
 export const freshId = (stem: string): string => `${stem}-${++counter}`;

@@ -3,6 +3,7 @@
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import type { Page } from "@playwright/test";
+import { closeSilently, reportEnd } from "./closing";
 import { LONG, expect, test } from "./lab";
 import { slot } from "./ownfiles";
 import { cameraJson, colourPng, depthPng, drop, maskPng, roomPng } from "./uploads";
@@ -43,6 +44,21 @@ test("files dropped onto it fill all steps, each with its thumbnail, and Run pla
   await press(page, "Run");
   await expect(path(page)).toBeHidden();
   await expect(lab.iteration).not.toHaveText("0");
+});
+
+test("it keeps its parts if it is opened again before the browser reports its end", async ({ lab, page }) => {
+  await lab.open("size=32");
+  await openPath(page);
+  const dialog = page.locator("dialog.first-run");
+  await expect(dialog.getByText("Colour image")).toBeVisible();
+  await closeSilently(dialog);
+  await openPath(page);
+  await reportEnd(dialog);
+  await expect(dialog.getByText("Colour image")).toBeVisible();
+  await page.keyboard.press("Escape");
+  await expect(path(page)).toBeHidden();
+  await lab.unfold();
+  await expect(slot(lab, 0)).toContainText("Colour image");
 });
 
 test("it can be left and resumed, and what was given in the slots is there", async ({ lab, page }) => {

@@ -2,6 +2,7 @@
 
 import type { Page } from "@playwright/test";
 import { asked, dialog, exercise, guess } from "./asked";
+import { closeSilently, reportEnd } from "./closing";
 import { LESSONS, control, open, settled, slide } from "./figure";
 import { LONG, expect, test } from "./lab";
 import { type SlideText, textsIn, tooSmall } from "./slide-text";
@@ -363,23 +364,19 @@ test("slides are counted, chosen by a link in its order, and found in a list", a
 });
 
 test("a link that is followed before the slides report their end shows its lesson alone", async ({ lab, page }) => {
-  /** Closes the slides and follows a link. The event of their end is held back until `end`. */
-  const follow = (hash: string) =>
-    page.evaluate((hash) => {
-      addEventListener("close", (event) => event.stopImmediatePropagation(), { capture: true, once: true });
-      document.querySelector<HTMLDialogElement>("dialog.learn-slides")?.close();
-      location.hash = hash;
-    }, hash);
-  const end = () => dialog(page).evaluate((each) => each.dispatchEvent(new Event("close")));
+  const follow = async (hash: string) => {
+    await closeSilently(dialog(page));
+    await page.evaluate((hash) => (location.hash = hash), hash);
+  };
   await open(page, "slides=grey,normal");
   await expect(page.locator('.learn-slide [data-lesson="grey"]')).toBeVisible();
   await follow("#learn&slides=normal,grey");
   await expect(page.locator('.learn-slide [data-lesson="normal"]')).toBeVisible();
-  await end();
+  await reportEnd(dialog(page));
   await expect(page.locator('.learn-slide [data-lesson="normal"]')).toBeVisible();
   await follow("#learn&at=strips");
   await expect(page.locator('.learn-main > [data-lesson="strips"]')).toBeVisible();
-  await end();
+  await reportEnd(dialog(page));
   await expect(page.locator('.learn-main > [data-lesson="strips"]')).toBeVisible();
   await expect(page.locator(".learn-lesson")).toHaveCount(1);
   expect(lab.complaints).toEqual([]);

@@ -4,7 +4,7 @@
  */
 
 import "../style/first-run.css";
-import { make } from "../dom";
+import { make, onClosed } from "../dom";
 import { Borrowed, STEPS, type Hooks, type StepName, stepsOf } from "./firststeps";
 import type { Files } from "./storage";
 
@@ -55,7 +55,7 @@ export class FirstRun {
       make("div", { class: "bodies" }, ...Object.values(this.#bodies)),
       make("div", { class: "foot" }, this.#lacks, this.#back, this.#next),
     );
-    this.#dialog.addEventListener("close", () => this.#borrowed.giveBack());
+    onClosed(this.#dialog, () => this.#borrowed.giveBack());
     // Readings, guesses and thumbnails arrive in the borrowed parts at their own times.
     new MutationObserver(() => this.#later()).observe(this.#bodies.picture.parentElement ?? this.#dialog, {
       ...{ subtree: true, childList: true, attributes: true, attributeFilter: ["hidden", "width"] },

@@ -1,6 +1,6 @@
 /** One figure at a time in large type for presenting to a class. Keys turn the slides, ask the lesson's questions and show answers. */
 
-import { make } from "../dom";
+import { make, onClosed } from "../dom";
 import { phrase } from "../words";
 import type { Chosen } from "./chosen";
 import type { Guesses } from "./guesses";
@@ -77,9 +77,7 @@ export class Slides {
     this.element.addEventListener("submit", () => this.#focus());
     this.element.addEventListener("click", () => this.#blank(false));
     new ResizeObserver(() => this.#explain()).observe(this.#holder);
-    this.element.addEventListener("close", () => {
-      // The event comes after a link may have opened the slides again.
-      if (this.element.open) return;
+    onClosed(this.element, () => {
       this.#blank(false);
       if (document.fullscreenElement) void document.exitFullscreen();
       hooks.close();
