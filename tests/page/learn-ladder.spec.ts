@@ -55,6 +55,17 @@ test("a button moves its slider slowly, and whoever takes a control ends that", 
   await expect(input(page, "stretch")).toHaveValue(stopped);
 });
 
+test("a link ends the move of a slider", async ({ page }) => {
+  await page.clock.install();
+  await open(page, "at=relief");
+  await tries(page).first().click();
+  await expect(input(page, "stretch")).not.toHaveValue("1");
+  await open(page, "at=relief&stretch=-1");
+  await expect(input(page, "stretch")).toHaveValue("-1");
+  await page.clock.runFor(3000);
+  await expect(input(page, "stretch")).toHaveValue("-1");
+});
+
 test("a choice is compared with the answer, after the figure has shown it", async ({ lab, page }) => {
   await open(page, "at=relief&stretch=-1");
   const guess = page.locator(".learn-guess").first();

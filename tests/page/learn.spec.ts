@@ -380,7 +380,8 @@ test("links of the exercises open the state they speak of", async ({ lab, page }
     for (const [key, value] of asked) {
       if (key === "learn" || key === "at") continue;
       const control = page.locator(`.learn-controls [name="${key}"]`);
-      if ((await control.getAttribute("type")) === "checkbox") expect(await control.isChecked()).toBe(value === "1");
+      const isBox = (await control.getAttribute("type")) === "checkbox";
+      if (isBox) await expect(control).toBeChecked({ checked: value === "1" });
       else await expect(control).toHaveValue(value);
     }
   }

@@ -382,6 +382,20 @@ test("a link that is followed before the slides report their end shows its lesso
   expect(lab.complaints).toEqual([]);
 });
 
+test("an address brings the exercises in place of the slides", async ({ lab, page }) => {
+  await open(page, "at=grey&slides");
+  await page.keyboard.press("q");
+  await expect(asked(page)).toHaveCount(1);
+  await page.evaluate(() => (location.hash = "#learn&at=exercises"));
+  await expect(page.locator(".learn-exercises")).toBeVisible();
+  await reportEnd(dialog(page));
+  await expect(page.locator(".learn-exercises")).toBeVisible();
+  await expect(page).toHaveURL(/at=exercises/);
+  await open(page, "at=grey");
+  await expect(asked(page)).toHaveCount(0);
+  expect(lab.complaints).toEqual([]);
+});
+
 test("the page for teachers is linked from the lessons and from the help", async ({ page, say }) => {
   const teachers = /\/docs\/guide\/learn\.md$/;
   await open(page, "at=normal");

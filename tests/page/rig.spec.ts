@@ -325,10 +325,10 @@ test(
     await answerChecks(page, "dead");
     await openPair(page);
     await run(page);
+    const status = page.locator(".rig-run").getByRole("status");
+    await expect(status).toHaveText("aligning depth edges");
     await page.getByRole("button", { name: "Cancel" }).click();
-    await expect(page.locator(".rig-run").getByRole("status")).toHaveText(
-      "Cancelled. Files and calibrations are kept.",
-    );
+    await expect(status).toHaveText("Cancelled. Files and calibrations are kept.");
     await step(page, "Files and cameras").click();
     const dialog = page.getByRole("dialog");
     // The old worker got the request, and the new one answers it.
@@ -379,6 +379,7 @@ test("what a reader warned of caps the verdict, and is what to do next", async (
     { name: "color_0001.png", mimeType: "image/png", buffer: colourPng() },
     { name: "depth_0001.png", mimeType: "image/png", buffer: grey },
   ]);
+  await expect(page.locator(".rig-frame")).toHaveCount(1);
   await put(page, [
     { name: "color_0002.png", mimeType: "image/png", buffer: colourPng(80, 60) },
     { name: "depth_0002.png", mimeType: "image/png", buffer: depthPng(80, 60) },

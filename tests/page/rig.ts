@@ -122,12 +122,12 @@ export function reportOf(
 }
 
 /**
- * The check answers with this report after some progress; the worker handles everything else. "never" keeps the check waiting; "dead" is a
- * worker that ignores all messages from a check on.
+ * The check answers with this report after some progress; the worker handles everything else. "never" keeps the check waiting, "unsent"
+ * the frames before it; "dead" is a worker that ignores all messages from a check on.
  */
 export async function answerChecks(
   page: Page,
-  verdict: CheckReport["verdict"] | "never" | "dead",
+  verdict: CheckReport["verdict"] | "never" | "unsent" | "dead",
   overlap?: number,
 ): Promise<void> {
   const source = `${reportOf.toString()}`;
@@ -147,7 +147,7 @@ export async function answerChecks(
         message: { kind?: string; id?: number; candidates?: object; frames?: { name: string }[] },
         options?: StructuredSerializeOptions | Transferable[],
       ) {
-        if (this === dead) return;
+        if (this === dead || (message.kind === "frames" && verdict === "unsent")) return;
         if (message.kind === "check" && verdict === "dead") dead = this;
         if (message.kind === "frames" && message.frames) frames = message.frames.map(({ name }) => name);
         if (message.kind !== "check") return send.call(this, message, options as StructuredSerializeOptions);

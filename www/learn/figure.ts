@@ -172,3 +172,9 @@ function draggable(box: HTMLElement, onMove: (x: number, y: number) => void, fol
     if (hovers || box.hasPointerCapture(event.pointerId)) tell(event);
   });
 }
+
+/** On a phone the figure may be out of view when a button below it is pressed. */
+export function showFigure(box: HTMLElement): void {
+  const { top, height } = box.getBoundingClientRect();
+  if (top < 0 || top + Math.min(height, innerHeight / 2) > innerHeight) box.scrollIntoView({ block: "start" });
+}

@@ -19,7 +19,7 @@ import { type Chosen, chosenBy, slidesInAddress } from "./chosen";
 import { Controls } from "./controls";
 import { Embed } from "./embed";
 import { exerciseList } from "./exercises";
-import { Figure } from "./figure";
+import { Figure, showFigure } from "./figure";
 import { Fit } from "./fit";
 import { FRAMES } from "./frames";
 import { Guesses } from "./guesses";
@@ -187,13 +187,13 @@ export class LearnPage {
   }
 
   #show(lesson: Lesson, values: Values): void {
-    if (this.#shown?.lesson === lesson) {
-      this.#shown.controls.show(values);
-      if (!this.#slides.isOpen && this.#shown.article.parentElement !== this.#main)
-        this.#main.replaceChildren(this.#shown.article);
+    const before = this.#shown;
+    before?.player.stop();
+    if (before?.lesson === lesson) {
+      before.controls.show(values);
+      if (!this.#slides.isOpen && before.article.parentElement !== this.#main)
+        this.#main.replaceChildren(before.article);
     } else {
-      const before = this.#shown;
-      before?.player.stop();
       // Slides that have just closed still hold it.
       before?.article.remove();
       this.#shown = this.#make(lesson, values);
@@ -208,6 +208,7 @@ export class LearnPage {
 
   #showExercises(): void {
     this.#shown?.player.stop();
+    this.#shown?.guesses.ask(undefined);
     this.#session.end();
     this.#slides.close();
     this.#main.replaceChildren(this.#exercises);
@@ -418,7 +419,8 @@ export class LearnPage {
 
   #endSlides(): void {
     const shown = this.#shown;
-    if (!shown || !this.#isOpen) return;
+    // An address may have brought the exercises before this.
+    if (!shown || !this.#isOpen || this.#exercises.isConnected) return;
     this.#main.replaceChildren(shown.article);
     shown.guesses.ask(undefined);
     shown.article.querySelector("h2")?.focus();
@@ -441,10 +443,4 @@ export class LearnPage {
     const link = this.#links.get(id);
     if (link) link.href = `#learn&${this.#kept.inAddress(id)}`;
   }
-}
-
-/** On a phone the figure may be out of view when a button below it is pressed. */
-function showFigure(box: HTMLElement): void {
-  const { top, height } = box.getBoundingClientRect();
-  if (top < 0 || top + Math.min(height, innerHeight / 2) > innerHeight) box.scrollIntoView({ block: "start" });
 }

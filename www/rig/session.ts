@@ -62,9 +62,12 @@ export class Session {
     });
   }
 
-  /** Ends the running check. A worker that does not respond is replaced, and the new one reads its files again. */
+  /**
+   * Ends the running check, whose frames may still be on their way. A worker that does not respond is replaced, and the new one reads its
+   * files again.
+   */
   cancel(): void {
-    const checks = [...this.#waiting].filter(([, { kind }]) => kind === "check");
+    const checks = [...this.#waiting].filter(([, { kind }]) => kind === "check" || kind === "frames");
     if (checks.length === 0) return;
     for (const [id, { reject }] of checks) {
       this.#waiting.delete(id);
