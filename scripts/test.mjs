@@ -299,7 +299,7 @@ const PARTS = [
     name: "page",
     run: page,
     needsBuild: true,
-    // The names of the tests that failed follow their number. Of each, the line that failed and what it found.
+    // Counts, the names of failed tests, and for each of them the failed line of code with the expected and the received value.
     closing:
       /^ +(?:\d+ (?:passed|failed|skipped|flaky|did not run)| {3}\[\w+\] › |(?:Error|Expected|Received)\b.*: |> +\d+ \| ).*$/gm,
   },
