@@ -251,6 +251,24 @@ impl PhotometricRegistration {
         found
     }
 
+    /// Registers a candidate by few points.
+    pub fn register_roughly(
+        &mut self,
+        pair: &ViewPair,
+        start: &Similarity,
+        most_points: usize,
+    ) -> Option<Box<PhotometricReport>> {
+        let options = PhotometricOptions { most_points, jackknife: false, ..options(pair) };
+        let problem = self.sharp.problem(pair, is_scale_held(pair), self.near);
+        let found = self.photometric.register(&problem, start, &options).ok()?;
+        Some(found).filter(|found| gauge::growth(pair, &found.pose, start) < COLLAPSE).map(Box::new)
+    }
+
+    /// Standard deviation of log S over the points of the last registration.
+    pub fn spread(&self, pair: &ViewPair) -> f64 {
+        self.photometric.spread(&self.sharp.problem(pair, is_scale_held(pair), self.near))
+    }
+
     /// The photometric report of a pose that stays as it is, with the light fitted to it.
     pub fn judge(&mut self, pair: &ViewPair, pose: &Similarity) -> Option<Box<PhotometricReport>> {
         let options =

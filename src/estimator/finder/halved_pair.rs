@@ -9,6 +9,8 @@ use crate::options::Start;
 use crate::pose::{PhotometricReport, Similarity};
 use crate::view::{ColourView, DepthView};
 
+use super::local_optima::Choice;
+
 /// Largest number of object pixels at which a view is searched at full resolution: a frame of 128x128. Set on views of
 /// 640x480 (docs/lab/thresholds.md).
 const MOST_PIXELS: usize = 128 * 128;
@@ -63,9 +65,24 @@ impl HalvedPair {
         Similarity { scale, rotation: pose.rotation, translation }
     }
 
+    /// Converts a pose of the views to the frames of the coarse pair.
+    pub fn pose_in(&self, pose: &Similarity) -> Similarity {
+        let Self { image, depth, .. } = self;
+        let translation = pose.translation - image.origin + pose.scale * (pose.rotation * depth.origin);
+        let scale = pose.scale * depth.unit / image.unit;
+        Similarity { scale, rotation: pose.rotation, translation: translation / image.unit }
+    }
+
+    /// Converts a choice in the coarse pair to the views.
+    pub fn choice_out(&self, mut choice: Choice) -> Choice {
+        let poses = choice.rivals.iter_mut().chain(&mut choice.ends);
+        poses.for_each(|pose| *pose = self.pose_out(pose));
+        Choice { best: choice.best.map(|best| self.report_out(best)), ..choice }
+    }
+
     /// Converts a registration of the coarse pair to the views, for which it counts as a registration of sampled
     /// points.
-    pub fn report_out(&self, mut report: Box<PhotometricReport>) -> Box<PhotometricReport> {
+    fn report_out(&self, mut report: Box<PhotometricReport>) -> Box<PhotometricReport> {
         report.pose = self.pose_out(&report.pose);
         report.sampled = true;
         for sigma in report.uncertainty.translation.iter_mut().flatten() {

@@ -162,6 +162,12 @@ impl LocalOptima {
         self.optima.iter().max_by(|a, b| a.gain.total_cmp(&b.gain)).map(|best| best.registered.pose)
     }
 
+    /// The poses of the best optima, best first.
+    pub fn best_poses(mut self, most: usize) -> Vec<Similarity> {
+        self.optima.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        self.optima.iter().take(most).map(|optimum| optimum.registered.pose).collect()
+    }
+
     /// Whether a candidate lies near an optimum with enough support.
     pub fn is_known(&self, pose: &Similarity) -> bool {
         let near = |known: &LocalOptimum| {

@@ -14,8 +14,8 @@
 //!                +-> choice among the local optima <---------------+--+  |
 //!                        |                                               |
 //!                    diagnosis: does a single albedo explain the image?  |
-//!                        | yes          | no: local contrast (orthographic image); behind a pinhole silhouettes or,
-//!                        |              |     near an initial pose, all of it again, held near that pose
+//!                        | yes          | no: local contrast (orthographic image); behind a pinhole silhouettes and a
+//!                        |              |     second search or, near an initial pose, all of it again, held near it
 //!                        v              v                                |
 //!                    decision: pose, method, rivals <--------------------+
 //! ```
@@ -31,6 +31,7 @@
 //! | `task` | parts of the search that a worker may take, and their results |
 //! | `local_optima` | ends of the registrations; the best pose and its rivals |
 //! | `local_contrast`, `silhouettes` | the methods for varying albedo |
+//! | `second_search` | another search for varying albedo behind a pinhole, if nothing is known about the pose |
 //! | `halved_pair` | the halved pair in which large views are searched |
 //!
 //! The outcome is a [`Decision`].
@@ -40,6 +41,7 @@ mod halved_pair;
 pub mod initial_pose;
 mod local_contrast;
 pub mod local_optima;
+mod second_search;
 mod silhouettes;
 pub mod task;
 
@@ -56,6 +58,7 @@ use candidates::{Candidates, EVERYWHERE};
 use initial_pose::{InitialEvidence, InitialRegistrations, Progress, TrustRegion, explains};
 use local_contrast::CleanedImage;
 use local_optima::{Choice, LocalOptima};
+use second_search::SecondSearch;
 use silhouettes::Anywhere;
 use task::{Finding, Task};
 
@@ -93,6 +96,8 @@ enum Phase {
     Candidates(Box<Candidates>),
     Contrast(Box<ByContrast>),
     Silhouettes(Box<Anywhere>),
+    /// The pose from silhouettes waits for the decision.
+    Again(Box<SecondSearch>, Option<Box<SilhouetteReport>>),
     Done,
 }
 
@@ -216,6 +221,7 @@ impl Finder {
             Phase::Candidates(candidates) => self.register_candidates(pair, memory, candidates)?,
             Phase::Contrast(contrast) => self.compare_contrast(pair, memory, contrast)?,
             Phase::Silhouettes(anywhere) => self.compare_silhouettes(pair, memory, anywhere),
+            Phase::Again(second, silhouettes) => self.search_again(pair, memory, second, silhouettes),
             Phase::Done => Next::Nothing,
         };
         Ok(match next {
@@ -266,10 +272,9 @@ impl Finder {
         };
         let Some(mut choice) = choice else { return Ok(Next::Phase(Phase::Candidates(candidates))) };
         let mut looked_at = candidates.poses();
-        if let Scope::Everywhere(Some(halved)) = &mut self.scope {
-            let poses = looked_at.iter_mut().chain(&mut choice.rivals).chain(&mut choice.ends);
-            poses.for_each(|pose| *pose = halved.pose_out(pose));
-            choice.best = choice.best.map(|best| halved.report_out(best));
+        if let Scope::Everywhere(Some(halved)) = &self.scope {
+            looked_at.iter_mut().for_each(|pose| *pose = halved.pose_out(pose));
+            choice = halved.choice_out(choice);
         }
         self.diagnose(pair, memory, choice, looked_at)
     }
@@ -318,10 +323,45 @@ impl Finder {
     /// A slice of the registrations by silhouettes without an initial pose.
     fn compare_silhouettes(&mut self, pair: &ViewPair, memory: &mut Memory, mut anywhere: Box<Anywhere>) -> Next {
         let photometric = PhotometricRegistration::prepared(memory, pair);
-        if anywhere.advance(pair, photometric.normals()) {
-            return everywhere_by(pair, photometric, anywhere.best(), std::mem::take(&mut self.chosen));
+        if !anywhere.advance(pair, photometric.normals()) {
+            return Next::Phase(Phase::Silhouettes(anywhere));
         }
-        Next::Phase(Phase::Silhouettes(anywhere))
+        let found = anywhere.best();
+        let known = found.iter().map(|found| found.pose).chain(self.chosen.best.iter().map(|best| best.pose));
+        let second = match &self.scope {
+            Scope::Everywhere(Some(halved)) => {
+                let known = known.map(|pose| halved.pose_in(&pose)).collect();
+                SecondSearch::new(&halved.pair, &halved.photometric, known)
+            }
+            _ => SecondSearch::new(pair, photometric, known.collect()),
+        };
+        match second {
+            Some(second) => Next::Phase(Phase::Again(Box::new(second), found.map(Box::new))),
+            None => everywhere_by(pair, photometric, found, std::mem::take(&mut self.chosen)),
+        }
+    }
+
+    /// A slice of the second search.
+    fn search_again(
+        &mut self,
+        pair: &ViewPair,
+        memory: &mut Memory,
+        mut second: Box<SecondSearch>,
+        silhouettes: Option<Box<SilhouetteReport>>,
+    ) -> Next {
+        let photometric = PhotometricRegistration::prepared(memory, pair);
+        let choice = match &mut self.scope {
+            Scope::Everywhere(Some(halved)) => {
+                let choice = second.advance(&halved.pair, &mut halved.photometric);
+                choice.map(|choice| halved.choice_out(choice))
+            }
+            _ => second.advance(pair, photometric),
+        };
+        let Some(choice) = choice else { return Next::Phase(Phase::Again(second, silhouettes)) };
+        match second_search::decide(pair, photometric, silhouettes.as_deref(), choice) {
+            Some(decision) => Next::Decision(decision),
+            None => everywhere_by(pair, photometric, silhouettes.map(|found| *found), std::mem::take(&mut self.chosen)),
+        }
     }
 
     /// The decision, or the method that comes next after local contrast, which `found` a pose or did not.
@@ -393,6 +433,10 @@ impl Phase {
                 (BEFORE_CONTRAST + (1.0 - BEFORE_CONTRAST) * contrast.search.share(), Activity::ComparingContrast)
             }
             Self::Silhouettes(_) => (BEFORE_CONTRAST, Activity::ComparingSilhouettes),
+            Self::Again(second, _) => {
+                let (share, activity) = second.progress();
+                (BEFORE_CONTRAST + (1.0 - BEFORE_CONTRAST) * share, activity)
+            }
             Self::Done => (1.0, Activity::Registering),
         }
     }

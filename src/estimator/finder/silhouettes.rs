@@ -19,7 +19,7 @@ const LARGEST_DISCONTINUITY_NOISE: f64 = 6.0;
 const TURNS: [f64; 3] = [0.0, -32.0, 32.0];
 const TILTS: [f64; 3] = [0.0, -24.0, 24.0];
 /// Sigma of the prior's rotation if no initial pose is given, degrees: both cameras look from roughly the same side.
-const ANYWHERE_DEGREES: f64 = 25.0;
+pub const ANYWHERE_DEGREES: f64 = 25.0;
 
 /// Whether the photometric residuals show varying albedo, so that silhouettes decide if they can.
 pub fn has_varying_albedo(pair: &ViewPair, found: &PhotometricReport) -> bool {

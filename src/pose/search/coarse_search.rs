@@ -33,6 +33,7 @@ pub struct Search {
     starts: Vec<Hypothesis>,
     ascents: TaskResults<Candidate>,
     candidates: Vec<Candidate>,
+    most_candidates: usize,
     /// The best of all hypotheses so far.
     best: Option<Candidate>,
 }
@@ -76,6 +77,7 @@ impl Search {
             starts: Vec::new(),
             ascents: TaskResults::new(MOST_ASCENTS),
             candidates: Vec::new(),
+            most_candidates: MOST_CANDIDATES,
             best: None,
             matcher,
             sweep,
@@ -88,6 +90,15 @@ impl Search {
         self.matcher.place_at(initial);
         self.sweep.narrow(&initial.rotation, degrees);
         self.swept = TaskResults::new(self.sweep.slices());
+    }
+
+    /// Prepares a search behind a pinhole in which the depth map may show only a part of the object: the distance
+    /// follows from the size of the mask, and the end of every ascent is a candidate. To be called before the first slice.
+    pub(crate) fn seek_parts(&mut self) {
+        self.matcher.place_by_area();
+        self.sweep.seek_parts();
+        self.swept = TaskResults::new(self.sweep.slices());
+        self.most_candidates = MOST_ASCENTS;
     }
 
     /// The best translation for a fixed rotation; `None` if too little of the cloud is visible.
@@ -226,7 +237,7 @@ impl Search {
         let ends = self.ascents.results().filter(|candidate| candidate.score.is_finite());
         self.candidates = ends.copied().collect();
         self.candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
-        suppress_duplicates(&mut self.candidates, MOST_CANDIDATES, CANDIDATE_SEPARATION, |one| &one.pose.rotation);
+        suppress_duplicates(&mut self.candidates, self.most_candidates, CANDIDATE_SEPARATION, |one| &one.pose.rotation);
     }
 }
 

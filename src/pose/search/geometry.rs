@@ -21,6 +21,8 @@ pub struct Geometry {
     scale: f64,
     /// Distance of the cloud's centre from a pinhole, in units of the colour view.
     distance: Option<f64>,
+    /// That distance if both silhouettes have the same area.
+    distance_of_area: Option<f64>,
     ray: [f64; 2],
 }
 
@@ -30,12 +32,22 @@ impl Geometry {
         let scale = problem.scale.unwrap_or(problem.unit_scale);
         let ray = image.camera.ray(image.size, target.middle);
         let seen = image.mask.iter().filter(|&&inside| inside).count();
-        let distance = image.camera.focal_length().map(|focal_length| match depth.camera {
-            Camera::Pinhole(_) => scale * cloud.centre.z,
-            Camera::Orthographic => focal_length * scale * (depth.valid() as f64 / seen as f64).sqrt(),
-        });
+        let focal_length = image.camera.focal_length();
+        // Length of a depth pixel at the object.
+        let pixel = depth.camera.focal_length().map_or(1.0, |focal_length| cloud.centre.z / focal_length);
+        let of_area = |focal_length: f64| focal_length * scale * pixel * (depth.valid() as f64 / seen as f64).sqrt();
+        let distance_of_area = focal_length.map(of_area);
+        let distance = match depth.camera {
+            Camera::Pinhole(_) => focal_length.map(|_| scale * cloud.centre.z),
+            Camera::Orthographic => distance_of_area,
+        };
         let ray = if distance.is_some() { ray } else { [0.0; 2] };
-        Self { camera: image.camera, image: image.size, scale, distance, ray }
+        Self { camera: image.camera, image: image.size, scale, distance, distance_of_area, ray }
+    }
+
+    /// Takes the distance at which both silhouettes have the same area.
+    pub const fn place_by_area(&mut self) {
+        self.distance = self.distance_of_area;
     }
 
     /// Takes the distance of the centre from a given pose.

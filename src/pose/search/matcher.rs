@@ -63,6 +63,11 @@ impl Matcher {
         self.geometry.place_at(initial, &self.cloud);
     }
 
+    /// Takes the distance at which both silhouettes have the same area.
+    pub const fn place_by_area(&mut self) {
+        self.geometry.place_by_area();
+    }
+
     /// Whether the distance varies instead of the scale.
     pub const fn has_distance(&self) -> bool {
         self.geometry.has_distance()

@@ -11,6 +11,9 @@ const SPACING: f64 = 16.0;
 const FREE_SCALES: [f64; 4] = [0.74, 0.90, 1.09, 1.32];
 /// Apparent sizes behind a pinhole with a held scale, where the distance is known only roughly.
 const NEAR_SIZES: [f64; 3] = [0.87, 1.0, 1.15];
+/// Apparent sizes behind a pinhole if the depth map may show only a part of the object, relative to a silhouette of the
+/// same area: the smallest covers two fifths of the mask.
+const SIZES_OF_PARTS: [f64; 4] = [1.1, 0.91, 0.75, 0.62];
 /// Number of pairs in one slice.
 const SWEPT_AT_ONCE: usize = 8;
 /// Number of slices at the beginning that have a single pair. The first call compiles the code, and until engines have
@@ -40,6 +43,11 @@ impl Sweep {
         self.rotations.retain(|turn| turn.trace() >= least_trace);
         self.rotations.iter_mut().for_each(|turn| *turn *= initial);
         self.rotations.push(*initial);
+    }
+
+    /// Takes the sizes of parts of the object.
+    pub const fn seek_parts(&mut self) {
+        self.sizes = &SIZES_OF_PARTS;
     }
 
     /// The apparent sizes of the sweep.
