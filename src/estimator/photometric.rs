@@ -20,7 +20,7 @@ const LARGEST_NOISE: f64 = 0.2;
 /// Largest number of points, evenly spread, by which a candidate of the search is registered. The best candidate is
 /// registered again by all points. With at most 33 unknowns, so many points average the noise well enough to distinguish
 /// candidates, and large views take no longer.
-const CANDIDATE_POINTS: usize = 2500;
+pub const CANDIDATE_POINTS: usize = 2500;
 
 /// Change of the apparent size (natural logarithm) beyond which a registration has collapsed: a cloud that shrinks onto
 /// a few pixels fits easily. Candidates of the search lie within 0.1 of the right size.

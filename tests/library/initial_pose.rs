@@ -12,20 +12,30 @@ use nalgebra::{Rotation3, Vector3};
 
 const SIZE: Size = Size { width: 96, height: 72 };
 
+fn pinhole(focal_length: f64) -> Camera {
+    Camera::Pinhole(Pinhole { fx: focal_length, fy: focal_length, cx: 47.5, cy: 35.5, lens: Lens::None })
+}
+
 /// The bust at a distance of four times its height from both calibrated cameras.
-fn perspective(light_name: &str) -> Sample {
-    let pinhole = Pinhole { fx: 288.0, fy: 288.0, cx: 47.5, cy: 35.5, lens: Lens::None };
-    let request = SampleRequest {
+fn request(light_name: &str) -> SampleRequest {
+    SampleRequest {
         size: SIZE,
         light: light(light_name).unwrap(),
         rotation: Angles { alpha: -5.0, beta: 20.0, gamma: 5.0 }.rotation(),
         noise: 0.01,
         depth_noise: 0.1,
-        image_camera: Camera::Pinhole(pinhole),
-        depth_camera: Camera::Pinhole(pinhole),
+        image_camera: pinhole(288.0),
+        depth_camera: pinhole(288.0),
         ..Default::default()
-    };
-    Scene::new(&surface("bust").unwrap()).unwrap().sample(&request).unwrap()
+    }
+}
+
+fn sampled(request: &SampleRequest) -> Sample {
+    Scene::new(&surface("bust").unwrap()).unwrap().sample(request).unwrap()
+}
+
+fn perspective(light_name: &str) -> Sample {
+    sampled(&request(light_name))
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -33,6 +43,8 @@ enum Paint {
     None,
     /// Four albedos in a pattern.
     Patches,
+    /// Spots of dirt, which are a quarter darker than what is between them.
+    Dirt,
     /// Black on white, in letters of one pixel, which neighbouring pixels cannot distinguish from noise.
     FinePrint,
 }
@@ -50,8 +62,19 @@ fn painted(sample: &Sample, kind: Paint) -> ColourSamples {
         }
         if (index as u64 * 2_654_435_761) >> 7 & 3 < 2 { [0.04; 3] } else { [0.9; 3] }
     };
+    let dirty = |index: usize, colours: [f32; 3]| {
+        let (column, row) = sample.image.size.position(index);
+        let [x, y] = [column, row].map(|at| at as f32);
+        let dirt = (0.55 * x + 0.2 * y).sin() * (0.5 * y - 0.3 * x).sin();
+        let albedo = (-0.15 * (4.0 * dirt).tanh()).exp();
+        colours.map(|colour| albedo * (0.05 + colour))
+    };
     let shaded = |index: usize| {
-        let shading = sample.image.colours[3 * index..3 * index + 3].iter().sum::<f32>() / 3.0;
+        let colours = [0, 1, 2].map(|channel| sample.image.colours[3 * index + channel]);
+        if kind == Paint::Dirt && sample.image.mask[index] {
+            return dirty(index, colours);
+        }
+        let shading = colours.iter().sum::<f32>() / 3.0;
         paint(index).map(|paint: f32| if sample.image.mask[index] { paint * (0.5 + shading) } else { paint })
     };
     ColourSamples::RgbLinear((0..sample.image.size.len()).flat_map(shaded).collect())
@@ -156,6 +179,23 @@ mod long {
         let plain = run(&sample, Paint::None, Options::default());
         let by_silhouettes = matches!(plain.reason, Some(Reason::AlbedoVaries { .. } | Reason::SilhouetteBlind { .. }));
         assert!(plain.pose.degrees_to(&sample.pose) < 2.0 && !by_silhouettes, "{plain:?}");
+    }
+
+    /// Silhouettes move what the depth camera sees until it fills the mask, and the first search places the object as far
+    /// away as the depth camera is.
+    #[test]
+    fn a_painted_object_is_found_though_the_depth_camera_sees_a_part_of_it_from_nearer() {
+        let request = SampleRequest {
+            rotation: Angles { alpha: -5.0, beta: 15.0, gamma: 5.0 }.rotation(),
+            overlap: 0.7,
+            depth_camera: pinhole(192.0),
+            ..request("colourful")
+        };
+        let sample = sampled(&request);
+        let report = run(&sample, Paint::Dirt, Options::default());
+        let middle = middle(&sample);
+        let off = report.pose.apply(middle) - sample.pose.apply(middle);
+        assert!(report.pose.degrees_to(&sample.pose) < 2.0 && off.norm() < 3.0, "{off} {report:?}");
     }
 
     #[test]

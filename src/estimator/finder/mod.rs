@@ -31,7 +31,7 @@
 //! | `task` | parts of the search that a worker may take, and their results |
 //! | `local_optima` | ends of the registrations; the best pose and its rivals |
 //! | `local_contrast`, `silhouettes` | the methods for varying albedo |
-//! | `second_search` | another search for varying albedo behind a pinhole, if nothing is known about the pose |
+//! | `varying_albedo`, `second_search` | behind a pinhole, if nothing is known about the pose: silhouettes and a second search |
 //! | `halved_pair` | the halved pair in which large views are searched |
 //!
 //! The outcome is a [`Decision`].
@@ -44,11 +44,12 @@ pub mod local_optima;
 mod second_search;
 mod silhouettes;
 pub mod task;
+mod varying_albedo;
 
 use nalgebra::Matrix3;
 
 use crate::error::Result;
-use crate::pose::{ContrastSearch, ImageGrid, SilhouetteReport, Similarity};
+use crate::pose::{ContrastSearch, ImageGrid, Similarity};
 use crate::reason::Activity;
 
 use super::decision::{Decision, Method};
@@ -58,9 +59,8 @@ use candidates::{Candidates, EVERYWHERE};
 use initial_pose::{InitialEvidence, InitialRegistrations, Progress, TrustRegion, explains};
 use local_contrast::CleanedImage;
 use local_optima::{Choice, LocalOptima};
-use second_search::SecondSearch;
-use silhouettes::Anywhere;
 use task::{Finding, Task};
+use varying_albedo::{Progressed, VaryingAlbedo};
 
 pub use candidates::search;
 pub use halved_pair::HalvedPair;
@@ -95,9 +95,7 @@ enum Phase {
     Nearby(Box<InitialRegistrations>),
     Candidates(Box<Candidates>),
     Contrast(Box<ByContrast>),
-    Silhouettes(Box<Anywhere>),
-    /// The pose from silhouettes waits for the decision.
-    Again(Box<SecondSearch>, Option<Box<SilhouetteReport>>),
+    VaryingAlbedo(Box<VaryingAlbedo>),
     Done,
 }
 
@@ -220,8 +218,7 @@ impl Finder {
             Phase::Nearby(nearby) => self.look_nearby(pair, memory, nearby)?,
             Phase::Candidates(candidates) => self.register_candidates(pair, memory, candidates)?,
             Phase::Contrast(contrast) => self.compare_contrast(pair, memory, contrast)?,
-            Phase::Silhouettes(anywhere) => self.compare_silhouettes(pair, memory, anywhere),
-            Phase::Again(second, silhouettes) => self.search_again(pair, memory, second, silhouettes),
+            Phase::VaryingAlbedo(varying) => self.look_despite_albedo(pair, memory, varying),
             Phase::Done => Next::Nothing,
         };
         Ok(match next {
@@ -320,47 +317,17 @@ impl Finder {
         self.next_method(pair, memory, found)
     }
 
-    /// A slice of the registrations by silhouettes without an initial pose.
-    fn compare_silhouettes(&mut self, pair: &ViewPair, memory: &mut Memory, mut anywhere: Box<Anywhere>) -> Next {
+    /// A slice of silhouettes and second search without an initial pose.
+    fn look_despite_albedo(&mut self, pair: &ViewPair, memory: &mut Memory, mut varying: Box<VaryingAlbedo>) -> Next {
         let photometric = PhotometricRegistration::prepared(memory, pair);
-        if !anywhere.advance(pair, photometric.normals()) {
-            return Next::Phase(Phase::Silhouettes(anywhere));
-        }
-        let found = anywhere.best();
-        let known = found.iter().map(|found| found.pose).chain(self.chosen.best.iter().map(|best| best.pose));
-        let second = match &self.scope {
-            Scope::Everywhere(Some(halved)) => {
-                let known = known.map(|pose| halved.pose_in(&pose)).collect();
-                SecondSearch::new(&halved.pair, &halved.photometric, known)
-            }
-            _ => SecondSearch::new(pair, photometric, known.collect()),
+        let halved = match &mut self.scope {
+            Scope::Everywhere(halved) => halved.as_deref_mut(),
+            Scope::Near(_) => None,
         };
-        match second {
-            Some(second) => Next::Phase(Phase::Again(Box::new(second), found.map(Box::new))),
-            None => everywhere_by(pair, photometric, found, std::mem::take(&mut self.chosen)),
-        }
-    }
-
-    /// A slice of the second search.
-    fn search_again(
-        &mut self,
-        pair: &ViewPair,
-        memory: &mut Memory,
-        mut second: Box<SecondSearch>,
-        silhouettes: Option<Box<SilhouetteReport>>,
-    ) -> Next {
-        let photometric = PhotometricRegistration::prepared(memory, pair);
-        let choice = match &mut self.scope {
-            Scope::Everywhere(Some(halved)) => {
-                let choice = second.advance(&halved.pair, &mut halved.photometric);
-                choice.map(|choice| halved.choice_out(choice))
-            }
-            _ => second.advance(pair, photometric),
-        };
-        let Some(choice) = choice else { return Next::Phase(Phase::Again(second, silhouettes)) };
-        match second_search::decide(pair, photometric, silhouettes.as_deref(), choice) {
-            Some(decision) => Next::Decision(decision),
-            None => everywhere_by(pair, photometric, silhouettes.map(|found| *found), std::mem::take(&mut self.chosen)),
+        match varying.advance(pair, photometric, halved, self.chosen.best.as_deref()) {
+            Progressed::Ongoing => Next::Phase(Phase::VaryingAlbedo(varying)),
+            Progressed::Done(Some(decision)) => Next::Decision(decision),
+            Progressed::Done(None) => of_single_albedo(pair, photometric, std::mem::take(&mut self.chosen)),
         }
     }
 
@@ -378,32 +345,19 @@ impl Finder {
             return Ok(Next::Decision(decision));
         }
         let are_called_for = silhouettes::are_called_for(pair, self.chosen.best.as_deref());
-        Ok(match are_called_for.then(|| Anywhere::new(pair, photometric.normals())).flatten() {
-            Some(anywhere) => Next::Phase(Phase::Silhouettes(Box::new(anywhere))),
-            None => everywhere_by(pair, photometric, None, std::mem::take(&mut self.chosen)),
+        Ok(match are_called_for.then(|| VaryingAlbedo::new(pair, photometric)).flatten() {
+            Some(varying) => Next::Phase(Phase::VaryingAlbedo(Box::new(varying))),
+            None => of_single_albedo(pair, photometric, std::mem::take(&mut self.chosen)),
         })
     }
 }
 
-/// The decision for silhouettes, or else for the best registration.
-fn everywhere_by(
-    pair: &ViewPair,
-    photometric: &mut PhotometricRegistration,
-    silhouettes: Option<SilhouetteReport>,
-    Choice { best, rivals, ends }: Choice,
-) -> Next {
-    match (silhouettes, best) {
-        (Some(found), _) => {
-            let by = Method::Silhouettes(Box::new(found));
-            Next::Decision(Decision { rivals: Some(Vec::new()), ..Decision::of(by) })
-        }
-        (None, Some(mut best)) => {
-            photometric.complete_sigmas(pair, &mut best);
-            best.uncertainty.add_spread(&best.pose, &ends);
-            Next::Decision(Decision { by: Method::Photometric(best), rivals: Some(rivals), ends })
-        }
-        (None, None) => Next::Nothing,
-    }
+/// The decision for the best registration under a single albedo.
+fn of_single_albedo(pair: &ViewPair, photometric: &mut PhotometricRegistration, choice: Choice) -> Next {
+    let Choice { best: Some(mut best), rivals, ends } = choice else { return Next::Nothing };
+    photometric.complete_sigmas(pair, &mut best);
+    best.uncertainty.add_spread(&best.pose, &ends);
+    Next::Decision(Decision { by: Method::Photometric(best), rivals: Some(rivals), ends })
 }
 
 impl Scope {
@@ -432,9 +386,8 @@ impl Phase {
             Self::Contrast(contrast) => {
                 (BEFORE_CONTRAST + (1.0 - BEFORE_CONTRAST) * contrast.search.share(), Activity::ComparingContrast)
             }
-            Self::Silhouettes(_) => (BEFORE_CONTRAST, Activity::ComparingSilhouettes),
-            Self::Again(second, _) => {
-                let (share, activity) = second.progress();
+            Self::VaryingAlbedo(varying) => {
+                let (share, activity) = varying.progress();
                 (BEFORE_CONTRAST + (1.0 - BEFORE_CONTRAST) * share, activity)
             }
             Self::Done => (1.0, Activity::Registering),

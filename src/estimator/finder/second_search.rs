@@ -8,10 +8,9 @@
 //! The optima are ranked by their gain over a constant colour of the points that they see. The spread of the whole
 //! image, in its place, would favour poses that see a part without contrast.
 
-use crate::estimator::decision::{Decision, Method};
 use crate::estimator::pair::ViewPair;
-use crate::estimator::photometric::{Attempt, FIRST_LEVEL_NEAR, PhotometricRegistration};
-use crate::pose::{ImageGrid, PhotometricReport, Search, SilhouetteReport, Similarity};
+use crate::estimator::photometric::{Attempt, CANDIDATE_POINTS, FIRST_LEVEL_NEAR, PhotometricRegistration};
+use crate::pose::{ImageGrid, PhotometricReport, Search, Similarity};
 use crate::reason::Activity;
 
 use super::candidates::search;
@@ -23,6 +22,11 @@ use super::silhouettes::ANYWHERE_DEGREES;
 const ROUGH_POINTS: usize = 400;
 /// Number of their optima that are registered again, with all terms.
 const MOST_REGISTERED: usize = 8;
+/// An end that sees fewer than this share of the points has receded until its points hide each other, and does not count.
+const LEAST_VISIBLE: f64 = 0.5;
+/// Largest noise of an end that may be the answer, as a share of the spread of the points that it sees. Set on pairs of a
+/// statue and on captures (docs/lab/thresholds.md).
+const LARGEST_NOISE_OF_SEEN: f64 = 0.35;
 /// Shares of the work of the search and of the rough registrations.
 const SEARCH_SHARE: f64 = 0.1;
 const ROUGH_SHARE: f64 = 0.5;
@@ -79,7 +83,7 @@ impl SecondSearch {
                 self.stage = Stage::Closely { optima: optima(starts.len()), starts, is_begun: false };
             }
             Stage::Closely { starts, is_begun, optima } => {
-                let Some(start) = starts.last() else { return Some(Choice::of(optima.ranked())) };
+                let Some(start) = starts.last() else { return Some(explained(pair, optima)) };
                 if !*is_begun {
                     photometric.keep_near(aligned_prior(pair, *start, ANYWHERE_DEGREES));
                 }
@@ -87,7 +91,8 @@ impl SecondSearch {
                 *is_begun = matches!(attempt, Attempt::Ongoing);
                 if let Attempt::Ended(found) = attempt {
                     starts.pop();
-                    if let Some(found) = found {
+                    let least = LEAST_VISIBLE * pair.depth.valid().min(CANDIDATE_POINTS) as f64;
+                    if let Some(found) = found.filter(|found| found.visible as f64 >= least) {
                         optima.enter(Origin::Candidate(starts.len()), registered(pair, photometric, found));
                     }
                 }
@@ -112,6 +117,16 @@ impl SecondSearch {
     }
 }
 
+/// The choice among the ends if the best one explains the points that it sees, otherwise none.
+fn explained(pair: &ViewPair, optima: &mut LocalOptima) -> Choice {
+    let ranking = optima.ranked();
+    let largest = LARGEST_NOISE_OF_SEEN * pair.image.log_spread();
+    match ranking.best.as_ref().is_some_and(|best| best.registered.noise <= largest) {
+        true => Choice::of(ranking),
+        false => Choice::default(),
+    }
+}
+
 /// An end for the comparison. Its noise, as a share of the spread of the points that it sees, is given in units of the
 /// image's spread.
 fn registered(
@@ -121,28 +136,4 @@ fn registered(
 ) -> RegisteredCandidate {
     let noise = found.noise * pair.image.log_spread() / photometric.spread(pair);
     RegisteredCandidate { noise, ..RegisteredCandidate::of(found) }
-}
-
-/// The decision for the end of the second search, if it explains the image and is more certain than silhouettes.
-pub fn decide(
-    pair: &ViewPair,
-    photometric: &mut PhotometricRegistration,
-    silhouettes: Option<&SilhouetteReport>,
-    Choice { best, rivals, ends }: Choice,
-) -> Option<Decision> {
-    let mut best = best?;
-    let sampled = best.pose;
-    photometric.keep_near(aligned_prior(pair, sampled, ANYWHERE_DEGREES));
-    let again = photometric.register_again(pair, &mut best, &sampled, &ends);
-    let sigma = best.uncertainty.largest_rotation();
-    let is_trusted = again.is_ok()
-        && !pair.residuals(&best).is_unexplained()
-        && silhouettes.is_none_or(|found| sigma <= found.uncertainty.largest_rotation());
-    if !is_trusted {
-        photometric.keep_near(None);
-        return None;
-    }
-    let mut rivals = rivals;
-    rivals.extend(silhouettes.map(|found| found.pose).filter(|pose| pose.degrees_to(&best.pose) > sigma));
-    Some(Decision { by: Method::Photometric(best), rivals: Some(rivals), ends })
 }
