@@ -186,8 +186,8 @@ mod long {
     #[test]
     fn a_painted_object_is_found_though_the_depth_camera_sees_a_part_of_it_from_nearer() {
         let request = SampleRequest {
-            rotation: Angles { alpha: -5.0, beta: 15.0, gamma: 5.0 }.rotation(),
-            overlap: 0.7,
+            rotation: Angles { alpha: -5.0, beta: 10.0, gamma: 5.0 }.rotation(),
+            overlap: 0.5,
             depth_camera: pinhole(192.0),
             ..request("colourful")
         };

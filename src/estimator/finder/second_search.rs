@@ -26,7 +26,7 @@ const MOST_REGISTERED: usize = 8;
 const LEAST_VISIBLE: f64 = 0.5;
 /// Largest noise of an end that may be the answer, as a share of the spread of the points that it sees. Set on pairs of a
 /// statue and on captures (docs/lab/thresholds.md).
-const LARGEST_NOISE_OF_SEEN: f64 = 0.35;
+const LARGEST_NOISE_OF_SEEN: f64 = 0.4;
 /// Shares of the work of the search and of the rough registrations.
 const SEARCH_SHARE: f64 = 0.1;
 const ROUGH_SHARE: f64 = 0.5;

@@ -13,6 +13,11 @@ use super::local_optima::Choice;
 use super::second_search::SecondSearch;
 use super::silhouettes::{ANYWHERE_DEGREES, Anywhere};
 
+/// Noise of the depth discontinuities about the silhouette, as a share of the object's size (root of its area in the image),
+/// up to which silhouettes agree, because the depth map shows the whole object. Set on pairs of a statue and on captures
+/// (docs/lab/thresholds.md).
+const LARGEST_MISFIT: f64 = 0.017;
+
 /// Result of a slice.
 pub enum Progressed {
     Ongoing,
@@ -76,6 +81,7 @@ impl VaryingAlbedo {
         Progressed::Done(self.decide(pair, photometric, choice))
     }
 
+    /// The second search, unless silhouettes agree.
     fn second_search(
         &self,
         pair: &ViewPair,
@@ -83,6 +89,10 @@ impl VaryingAlbedo {
         halved: Option<&HalvedPair>,
         plain: Option<&PhotometricReport>,
     ) -> Option<SecondSearch> {
+        let area = pair.image.object().iter().filter(|&&inside| inside).count() as f64;
+        if self.silhouettes.as_ref().is_some_and(|found| found.noise <= LARGEST_MISFIT * area.sqrt()) {
+            return None;
+        }
         let found = self.silhouettes.iter().map(|found| found.pose);
         let known = found.chain(plain.map(|plain| plain.pose));
         match halved {
