@@ -33,14 +33,14 @@ pub struct VaryingAlbedo {
 }
 
 enum Step {
-    Silhouettes(Anywhere),
+    Silhouettes(Box<Anywhere>),
     Search(Box<SecondSearch>),
 }
 
 impl VaryingAlbedo {
     /// `None` if silhouettes constrain nothing.
     pub fn new(pair: &ViewPair, photometric: &PhotometricRegistration) -> Option<Self> {
-        let step = Step::Silhouettes(Anywhere::new(pair, photometric.normals())?);
+        let step = Step::Silhouettes(Box::new(Anywhere::new(pair, photometric.normals())?));
         Some(Self { step, silhouettes: None })
     }
 
