@@ -3,21 +3,22 @@
 //! The initial poses are the candidates, the inverse of the first, and what the coarse search finds near the first.
 //! Each is registered only by its edges. The best few are refined with all cues, together with every candidate that
 //! lies elsewhere. The best of these optima is the estimate, and its covariance judges the candidates. If the first
-//! candidate does not pass, it is registered again in other conventions.
+//! candidate does not pass, it is registered again in other conventions. If it is off and none of them fits, all of this is
+//! done again, farther from it and about the estimate (`passes`).
 
 use super::cue::Cue;
 use super::distortion;
 use super::input::{RigView, rigid};
 use super::next::next;
-use super::optima::{self, Optimum, SAME_START};
+use super::optima::{self, Optimum};
+use super::passes::Passes;
 use super::planes::Planes;
 use super::readings::Reading;
 use super::reason::{CheckReason, Warning, WarningKind};
-use super::registration::{ARRIVED, Findings, Kept, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene, Start};
+use super::registration::{ARRIVED, Findings, Kept, MOST_SETTLING, Round, SIGMAS, SURVIVORS, Scene};
 use super::report::CheckReport;
 use super::rereading::Rereading;
 use super::reviewing::{Refining, Reviewing};
-use super::search;
 use super::sensitivity::curves;
 use super::unknowns::State;
 use super::unseen::leave_unseen_out;
@@ -83,8 +84,7 @@ pub struct CalibrationCheck {
     pub(super) warnings: Vec<Warning>,
     /// Width of the first image as given.
     pub(super) width: f64,
-    /// Sorted by score after each level, best first.
-    starts: Vec<Start>,
+    pub(super) passes: Passes,
     best: Round,
     stage: Stage,
     /// First radial coefficient of a distortion that was probably left out.
@@ -133,7 +133,7 @@ impl CalibrationCheck {
             candidates,
             warnings,
             width,
-            starts: vec![],
+            passes: Passes::new(initial, states),
             best,
             stage: Stage::Starting,
             lens: None,
@@ -145,24 +145,21 @@ impl CalibrationCheck {
     #[must_use]
     pub fn progress(&self) -> (f64, &'static str) {
         match &self.stage {
-            Stage::Starting => (0.0, "looking for depth edges in the image"),
+            Stage::Starting => (0.85 * self.passes.progress(0.0), "looking for depth edges in the image"),
             Stage::Approaching { level, index, .. } => {
-                let of_level = *index as f64 / self.starts.len().max(1) as f64;
+                let of_level = *index as f64 / self.passes.starts.len().max(1) as f64;
                 let share = (*level as f64 + of_level) / SIGMAS.len() as f64;
-                (0.1 + 0.6 * share, "aligning depth edges with image edges")
+                (0.85 * self.passes.progress(0.1 + 0.7 * share), "aligning depth edges with image edges")
             }
             Stage::Settling { rounds, at, done, .. } => {
                 let share = (*at as f64 + *done as f64 / MOST_SETTLING as f64) / rounds.len() as f64;
-                (0.7 + 0.15 * share, "refining with all cues")
+                (0.85 * self.passes.progress(0.8 + 0.2 * share), "refining with all cues")
             }
-            Stage::Judging { .. } => (0.85, "judging the candidates"),
-            Stage::Rereading { search, .. } => {
-                (0.86 + 0.01 * search.progress(), "trying other conventions of the candidate")
-            }
-            Stage::Reviewing { search, optima, .. } => {
-                // Those that the input suggests come before the conventions of the candidate, the others after them.
-                let from = if optima.is_some() { 0.85 } else { 0.87 };
-                (from + 0.01 * search.progress(), "trying other conventions of the image and the depth map")
+            Stage::Judging { .. } => (0.85 * self.passes.progress(1.0), "judging the candidates"),
+            Stage::Rereading { .. } | Stage::Reviewing { .. } => {
+                // A pass that is due lowers the share of what is done.
+                let done = if self.passes.is_due() { 0.0 } else { 1.0 };
+                (0.85 * self.passes.progress(done), "trying other conventions")
             }
             Stage::Curves { done, .. } => {
                 (0.88 + 0.12 * *done as f64 / self.scene.cues.len() as f64, "measuring sensitivity")
@@ -181,7 +178,7 @@ impl CalibrationCheck {
     pub fn step(&mut self) -> bool {
         self.stage = match std::mem::replace(&mut self.stage, Stage::Done) {
             Stage::Starting => {
-                self.find_starts();
+                self.passes.find_starts(&self.scene);
                 Stage::Approaching { level: 0, index: 0, planes: self.planes_of(0) }
             }
             Stage::Approaching { level, index, planes } => self.approach(level, index, planes),
@@ -219,84 +216,32 @@ impl CalibrationCheck {
         matches!(self.stage, Stage::Done)
     }
 
-    /// Initial poses: what the coarse search finds near the first candidate, the other candidates, and the inverse of the
-    /// first.
-    fn find_starts(&mut self) {
-        let initial = self.best.initial;
-        let units = self.scene.units(&initial);
-        let (discontinuities, states) = search::starts(&self.scene, &initial);
-        let start =
-            |state| Start { round: Round::from(state, initial), discontinuities: discontinuities.clone(), score: 0.0 };
-        let mut starts: Vec<Start> = states.into_iter().map(start).collect();
-        let others = self.candidates.iter().skip(1).map(|candidate| candidate.1);
-        for state in others.chain([State::at(initial.pose.inverse())]) {
-            let is_near =
-                |other: &Start| units.between(&other.round.state, &state).norm() <= SAME_START * self.scene.scale;
-            if !starts.iter().any(is_near) {
-                starts.push(self.scene.start(state, initial));
-            }
-        }
-        self.starts = starts;
-    }
-
-    /// Starts from the candidates once more at a late level. On texture, the wide windows of the early levels would lead candidates away
-    /// that are nearly right.
-    fn enter_candidates(&mut self) {
-        let initial = self.best.initial;
-        let states = self.candidates.iter().map(|candidate| candidate.1);
-        let entering = states.map(|state| self.scene.start(state, initial));
-        let entering: Vec<Start> = entering.collect();
-        self.starts.extend(entering);
-    }
-
     fn planes_of(&self, level: usize) -> Vec<Planes> {
         self.scene.planes(SIGMAS[level] * self.scene.scale)
     }
 
     /// Refines one pose at one level. After the last pose, the best ones proceed to the next level.
     fn approach(&mut self, level: usize, index: usize, planes: Vec<Planes>) -> Stage {
-        if let Some(start) = self.starts.get_mut(index) {
+        if let Some(start) = self.passes.starts.get_mut(index) {
             if FINDING_ANEW.contains(&level) {
                 self.scene.find_anew(start);
             }
             self.scene.approach(start, SIGMAS[level] * self.scene.scale, &planes);
             return Stage::Approaching { level, index: index + 1, planes };
         }
-        self.starts.sort_by(|a, b| b.score.total_cmp(&a.score));
-        self.keep_apart(SURVIVORS[level]);
+        self.passes.keep_apart(&self.scene, SURVIVORS[level]);
         if level + 1 == ENTERING {
-            self.enter_candidates();
+            self.passes.enter(&self.scene);
         }
         if level + 1 < SIGMAS.len() {
             return Stage::Approaching { level: level + 1, index: 0, planes: self.planes_of(level + 1) };
         }
-        let mut rounds: Vec<Round> = self.starts.iter().map(|start| start.round).collect();
-        let units = self.scene.units(&rounds[0].state);
-        for (_, state) in &self.candidates {
-            let is_near = |round: &Round| units.between(&round.state, state).norm() <= SAME_START * self.scene.scale;
-            if !rounds.iter().any(is_near) {
-                rounds.push(Round { sigma: rounds[0].sigma, ..Round::from(*state, rounds[0].initial) });
-            }
-        }
+        let rounds = self.passes.rounds(&self.scene);
         Stage::Settling { rounds, at: 0, done: 0, kept: None, planes }
     }
 
-    /// Keeps the best poses that differ from each other, at most `most`.
-    fn keep_apart(&mut self, most: usize) {
-        let units = self.scene.units(&self.best.initial);
-        let mut kept: Vec<Start> = vec![];
-        for start in self.starts.drain(..) {
-            let is_same = |other: &Start| {
-                units.between(&other.round.state, &start.round.state).norm() <= SAME_START * self.scene.scale
-            };
-            if kept.len() < most && !kept.iter().any(is_same) {
-                kept.push(start);
-            }
-        }
-        self.starts = kept;
-    }
-
-    /// Writes the first report. If the first candidate does not pass, the search over its other readings follows.
+    /// Ranks the optima and writes a report. If the first candidate does not pass, the search over its other readings follows the first
+    /// pass. If it is off and none of them fits, another pass follows.
     fn judge(&mut self, rounds: &[Round], planes: Vec<Planes>) -> Stage {
         let mut optima = optima::ranked(&self.scene, rounds, &planes);
         // The best initial pose is kept unless another one is clearly better, so that rounding does not choose between
@@ -306,16 +251,32 @@ impl CalibrationCheck {
             optima[..=start].rotate_right(1);
         }
         self.best = optima[0].round;
+        let verdict = self.conclude(&optima, &planes).candidates.first().map(|first| first.verdict);
+        let has_readings = self.passes.is_first() && verdict.is_some_and(|verdict| verdict != CheckVerdict::Consistent);
+        if verdict.is_none_or(|verdict| verdict == CheckVerdict::Off) {
+            self.plan_pass(&optima);
+        }
+        if self.passes.is_due() && !has_readings {
+            return Stage::Starting;
+        }
         self.lens = distortion::left_out(&mut self.scene, &self.best);
-        let report = self.conclude(&optima, &planes);
-        let passes = report.candidates.first().is_none_or(|first| first.verdict == CheckVerdict::Consistent);
-        self.report = Some(report);
-        if passes {
+        self.report = Some(self.conclude(&optima, &planes));
+        if !has_readings {
             return curves_of(optima, planes);
         }
         match self.review(&Reading::SUGGESTED) {
             Some(search) => Stage::Reviewing { search, planes, optima: Some(optima) },
             None => self.reread(optima, planes),
+        }
+    }
+
+    /// Plans another pass if the frames contradict the pose about which the last one looked.
+    fn plan_pass(&mut self, optima: &[Optimum]) {
+        let state = optima[0].round.state;
+        let judge = self.judge_of(&[&optima[0]]).0;
+        let is_off = |centre: &State| judge.judge("", &state, centre, None).verdict == CheckVerdict::Off;
+        if self.scene.is_seen(&state) {
+            self.passes.plan(optima, is_off);
         }
     }
 
@@ -388,8 +349,11 @@ impl CalibrationCheck {
         None
     }
 
-    /// The first report is kept, and the curves are those of its pose.
+    /// No reading fits: another pass follows if one is due. Otherwise the report is kept, and the curves are those of its pose.
     fn keep_report(&self, planes: Vec<Planes>) -> Stage {
+        if self.passes.is_due() {
+            return Stage::Starting;
+        }
         let findings = Box::new(self.scene.findings(&self.best, &planes));
         Stage::Curves { planes, findings, done: 0 }
     }

@@ -36,7 +36,10 @@ impl CalibrationCheck {
         let (judge, covariance) = of_all.as_ref().unwrap_or(&first);
         let mut candidates = self.candidate_reports(judge, optima[0], covariance);
         self.hear_other_optima(&mut candidates, &optima, &first.0, planes);
-        self.name_reading(&mut candidates, judge, optima[0]);
+        // Later passes follow only if no reading fits.
+        if self.passes.is_first() {
+            self.name_reading(&mut candidates, judge, optima[0]);
+        }
         let warnings = self.all_warnings(judge, &state);
         let health = if self.scene.is_seen(&state) { judge.estimate() } else { Judge::blind(self.width) };
         let (verdict, reason) = first_verdict(&candidates, &warnings, health);

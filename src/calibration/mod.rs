@@ -17,6 +17,7 @@
 //! | `information`, `shading`, `silhouette`, `differences` | cues over samples, finite differences |
 //! | `unknowns`, `evidence` | the unknowns in pixels; log likelihoods by tiles, weights, covariance |
 //! | `search`, `registration`, `lattice` | initial poses, rounds of the registration, states that rounding does not move |
+//! | `passes` | where each pass of the search begins, until the estimate stays |
 //! | `optima` | the optima and their ranking |
 //! | `readings`, `rereading` | other conventions of a candidate, and the search over them |
 //! | `reframed`, `reviewing` | frames in other conventions of their views, and the search over them |
@@ -46,6 +47,7 @@ mod lattice;
 mod next;
 mod optima;
 mod overlay;
+mod passes;
 mod patches;
 mod planes;
 mod readings;

@@ -38,12 +38,6 @@ impl Rereading {
         Self { optima, starts, level: 0, index: 0, planes: scene.planes(SIGMAS[0] * scene.scale) }
     }
 
-    /// Share of the search that is done.
-    pub fn progress(&self) -> f64 {
-        let of_level = self.index as f64 / self.starts.len().max(1) as f64;
-        (self.level as f64 + of_level) / (SIGMAS.len() + 1) as f64
-    }
-
     /// Registers one reading at one level. After the last level, registers the best reading with all cues on the finest
     /// images. Returns whether the search is over.
     pub fn step(&mut self, scene: &Scene, finest: &[Planes]) -> bool {

@@ -53,11 +53,6 @@ impl Reviewing {
         Self { readings, frames, planes, candidate, index: 0, score, best: None, refining: None }
     }
 
-    /// Share of the search that is done.
-    pub fn progress(&self) -> f64 {
-        self.index as f64 / self.readings.len() as f64
-    }
-
     /// Compares one reading, or refines the candidate in the best one by a round. Returns whether the search is over.
     pub fn step(&mut self, scene: &Scene) -> bool {
         if let Some(refining) = &mut self.refining {

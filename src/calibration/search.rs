@@ -20,8 +20,6 @@ use crate::numeric::eigen::symmetric_eigen;
 /// Distance between neighbouring poses of the lattice: the root mean square motion of the depth discontinuities, in pixels
 /// of an image 640 wide.
 const PACE: f64 = 4.0;
-/// Half width of the lattice, sigmas of the prior.
-const REACH: f64 = 1.5;
 /// Maximum number of places, which take a few tenths of a second. If the lattice has more, the pace grows.
 const MOST_PLACES: f64 = 6e4;
 /// Maximum number of depth discontinuities, over all frames, that are compared with image edges.
@@ -101,13 +99,14 @@ struct Lattice {
 
 type Place = [i8; UNKNOWNS];
 
-/// The depth discontinuities that are visible from `state`, and initial poses near it, of which `state` is the first.
-pub(super) fn starts(scene: &Scene, state: &State) -> (Vec<Vec<Discontinuity>>, Vec<State>) {
+/// The depth discontinuities that are visible from `state`, and initial poses near it, of which `state` is the first. `reach` is the half
+/// width of the lattice, sigmas of the prior.
+pub(super) fn starts(scene: &Scene, state: &State, reach: f64) -> (Vec<Vec<Discontinuity>>, Vec<State>) {
     let units = scene.units(state);
     let discontinuities = scene.discontinuities(state, MOST_DISCONTINUITIES);
     let rows: Vec<(usize, Discontinuity, [Vector; 2])> = rows(&scene.frames, state, &units, &discontinuities);
     let mut pace = PACE * scene.scale;
-    let Some(lattice) = Lattice::new(&rows, &scene.prior(&units), &mut pace) else {
+    let Some(lattice) = Lattice::new(&rows, &scene.prior(&units), reach, &mut pace) else {
         return (discontinuities, vec![*state]);
     };
     let marks: Vec<Mark> = rows.iter().map(|row| lattice.mark(row)).collect();
@@ -140,7 +139,7 @@ fn rows(
 
 impl Lattice {
     /// `pace` is in pixels, and grows if the lattice would have too many places.
-    fn new(rows: &[(usize, Discontinuity, [Vector; 2])], prior: &Matrix, pace: &mut f64) -> Option<Self> {
+    fn new(rows: &[(usize, Discontinuity, [Vector; 2])], prior: &Matrix, sigmas: f64, pace: &mut f64) -> Option<Self> {
         let mut squares = Matrix::zeros();
         rows.iter().flat_map(|(_, _, rows)| rows).for_each(|row| add_square(&mut squares, row, 1.0));
         let motion = squares / (rows.len() as f64).max(1.0);
@@ -151,7 +150,7 @@ impl Lattice {
         // Pixels by which one sigma moves the discontinuities along each direction.
         let lengths: [f64; UNKNOWNS] =
             std::array::from_fn(|k| eigen.eigenvalues[order[k]].max(f64::MIN_POSITIVE).sqrt());
-        let reach = |pace: f64| lengths.map(|length| (REACH * length / pace).min(f64::from(i8::MAX)) as i8);
+        let reach = |pace: f64| lengths.map(|length| (sigmas * length / pace).min(f64::from(i8::MAX)) as i8);
         while reach(*pace).iter().map(|&k| 2.0 * f64::from(k) + 1.0).product::<f64>() > MOST_PLACES {
             *pace *= 1.1;
         }
@@ -247,7 +246,7 @@ mod tests {
             };
             let rows: Vec<_> = points.iter().filter_map(row).collect();
             let mut pace = PACE;
-            let lattice = Lattice::new(&rows, &Matrix::identity(), &mut pace).unwrap();
+            let lattice = Lattice::new(&rows, &Matrix::identity(), 1.5, &mut pace).unwrap();
             let marks = rows.iter().map(|row| lattice.mark(row));
             assert!(marks.flat_map(|mark| mark.motion).flatten().all(f32::is_finite), "turn {turn}");
             assert!(lattice.sigmas.iter().all(|sigma| sigma.is_finite()), "turn {turn}");
