@@ -34,8 +34,8 @@ export const GALLERY = [
     kind: "marble",
     name: "Marble bust",
     shows: "Veins of two colours, which look like shading to a method that assumes a single albedo.",
-    level: "hard",
-    ends: { status: "ambiguous", degrees: 13, millimetres: 233 },
+    level: "medium",
+    ends: { status: "ambiguous", degrees: 1.4, millimetres: 23 },
   },
   {
     kind: "bowl",
