@@ -1,6 +1,5 @@
 // Depth with the flaws of sensors, refined at the known pose: quantised, noisy, laterally blurred.
 import { FROM_ANYWHERE } from "./scenes.mjs";
-import { median } from "./numbers.mjs";
 
 /** Three of twenty frames; the truth is the median of all twenty. */
 const FRAMES = [1, 7, 14];
@@ -50,6 +49,7 @@ export const sensors = {
   notes: [
     "mitten: one frame against the median of twenty, which has steps itself and is smoothed by 1.5 pixels",
     "kinect: 128x128, object 0.2 m wide at 0.8 m, disparity 580 x 0.075 / z rounded to 1/8 pixel; photograph, or light A",
+    "blur: the Gaussian blur of the measured depth with the smallest error; the truth chooses its sigma, given in brackets",
     "scan: bear and cow of DiLiGenT, noise of 0.7 pixel lengths smoothed sideways by 0.8 pixels, then steps of 0.8",
   ],
   cells: ({ complete }, quick) => {
@@ -63,6 +63,6 @@ export const sensors = {
   },
 };
 
-/** Median of the ratios of a sensor's rows, of one half or of both. */
-export const medianRatio = (rows, sensor, half) =>
-  median(rows.filter((row) => row.sensor === sensor && (!half || row.half === half)).map(({ ratio }) => ratio));
+/** Rows of a sensor, of one half or of both. */
+export const ofSensor = (rows, sensor, half) =>
+  rows.filter((row) => row.sensor === sensor && (!half || row.half === half));

@@ -4,11 +4,14 @@
 //   --json FILE      the numbers as JSON
 //   --docs           medians and aims into the marked region of docs/performance.md
 //   --browser-only, --native-only
+//   --beside         instead: the package beside the same stages in numpy, scipy and Open3D, run in turn
 import { writeFileSync } from "node:fs";
 import { cpus, loadavg } from "node:os";
 import { resolve } from "node:path";
 import { parseArgs } from "node:util";
+import { FULL_BESIDE, QUICK_BESIDE, measureBeside } from "./bench/beside.mjs";
 import { drawings, playing, startUps, transfers } from "./bench/page.mjs";
+import { besideReport } from "./bench/print-beside.mjs";
 import { report } from "./bench/print.mjs";
 import { searches, sharedSteps, stages } from "./bench/rounds.mjs";
 import { scenes } from "./bench/scenes.mjs";
@@ -17,7 +20,7 @@ import { browserSide, launch, nativeSide } from "./bench/sides.mjs";
 import { aims, pixelsOf, summary } from "./bench/summary.mjs";
 import { browser } from "./browser.mjs";
 import { build } from "./build.mjs";
-import { fill, benchLines } from "./docs.mjs";
+import { fill, benchLines, besideLines } from "./docs.mjs";
 import { setup } from "./setup.mjs";
 import { Failure, must, say, script, seconds } from "./shell.mjs";
 import { buildPage, sizes as measureSizes } from "./sizes.mjs";
@@ -43,22 +46,21 @@ function parsed() {
   const options = {
     quick: flag,
     docs: flag,
+    beside: flag,
     "browser-only": flag,
     "native-only": flag,
     json: { type: "string" },
     sizes: { type: "string" },
   };
   try {
-    const { quick, docs, json, sizes: named, ...only } = parseArgs({ options }).values;
-    const plan = quick ? QUICK : FULL;
+    const { quick, docs, json, beside, sizes: named, ...only } = parseArgs({ options }).values;
+    const plan = beside ? (quick ? QUICK_BESIDE : FULL_BESIDE) : quick ? QUICK : FULL;
     const sizes = named?.split(",") ?? plan.sizes;
     const unknown = sizes.find((size) => !SIZES.includes(size));
     if (unknown) throw new Error(`There is no size "${unknown}"; there are ${SIZES.join(", ")}.`);
     const randomSizes = plan.randomSizes.filter((size) => sizes.includes(size));
     return {
-      json,
-      quick,
-      docs,
+      ...{ json, quick, docs, beside },
       plan: { ...plan, sizes, randomSizes },
       native: !only["browser-only"],
       inBrowser: !only["native-only"],
@@ -112,11 +114,38 @@ async function around(chromium, address, side, made, plan) {
   return { startUp, transfer, drawing, playing: played };
 }
 
+/** The machine as the reports name it. */
+function machine() {
+  const [one] = loadavg();
+  return { load: one, machine: `${cpus()[0].model}, ${cpus().length} processors, load ${one.toFixed(1)}` };
+}
+
+function keep(file, result) {
+  if (!file) return;
+  writeFileSync(resolve(file), `${JSON.stringify(result, null, 1)}\n`);
+  say(`wrote ${file}`);
+}
+
+/** The comparison with what a person would write instead. */
+async function compared(api, made, { plan, quick, json: file, docs }) {
+  const result = { ...(await measureBeside(api, made, plan)), ...machine(), quick };
+  console.log(`\n${besideReport(result).join("\n")}\n`);
+  keep(file, result);
+  if (docs) fill("docs/performance.md", "beside", besideLines(result));
+}
+
 await script(async () => {
-  const { json: file, quick, docs, plan, native, inBrowser } = parsed();
+  const given = parsed();
+  const { json: file, quick, docs, plan, native, inBrowser } = given;
   const start = performance.now();
   await setup();
   await build();
+  if (given.beside) {
+    const api = await import("../pkg/index.js");
+    await api.default();
+    await compared(api, scenes(api, await import("../pkg/files.js")), given);
+    return say(`the comparison in ${seconds(start)}`);
+  }
   await buildPage();
   if (native) await must("cargo", ["bench", "--bench", "rounds", "--no-run"]);
 
@@ -132,18 +161,12 @@ await script(async () => {
     if (sides.length === 0) throw new Failure("--browser-only and --native-only leave nothing to time.");
     const found = await loops(sides, made, plan);
     const rest = inBrowser ? await around(chromium, server.address, sides[0], made, plan) : {};
-    const [one] = loadavg();
-    const about = {
-      ...{ surface: made.surface, lightName: made.lightName, covered: found.covered, quick, load: one },
-      machine: `${cpus()[0].model}, ${cpus().length} processors, load ${one.toFixed(1)}`,
-    };
+    const { surface, lightName } = made;
+    const about = { surface, lightName, covered: found.covered, quick, ...machine() };
     const result = summary({ ...found, ...rest, sizes: measureSizes(), about });
     const list = aims(result);
     console.log(`\n${report(result, list).join("\n")}\n`);
-    if (file) {
-      writeFileSync(resolve(file), `${JSON.stringify({ ...result, aims: list }, null, 1)}\n`);
-      say(`wrote ${file}`);
-    }
+    keep(file, { ...result, aims: list });
     if (docs) fill("docs/performance.md", "bench", benchLines({ ...result, aims: list }));
   } finally {
     for (const side of sides) await side.close();

@@ -1,11 +1,15 @@
-// The regions of docs that commands fill: `npm run tables -- --docs`, `npm run bench -- --docs` and `npm run ablation -- --docs`.
+// The regions of docs that commands fill: `npm run tables -- --docs`, `npm run bench -- --docs` (with `--beside` another one) and
+// `npm run ablation -- --docs`.
 //
 // A region lies between two comments and is replaced as a whole. Its figures come from one run, which its first line describes.
 import { readFileSync, writeFileSync } from "node:fs";
 import { Failure, inRoot, say } from "./shell.mjs";
+import { ratioOf, theirTime, time } from "./bench/print-beside.mjs";
 import { fixed } from "./tables/columns.mjs";
 
-const begin = (name) => `<!-- begin: ${name} (written by npm run ${name} -- --docs) -->`;
+/** Commands of the regions whose name is not that of their command. */
+const COMMANDS = { beside: "npm run bench -- --beside --docs" };
+const begin = (name) => `<!-- begin: ${name} (written by ${COMMANDS[name] ?? `npm run ${name} -- --docs`}) -->`;
 const end = (name) => `<!-- end: ${name} -->`;
 
 /** A text with its region filled in. */
@@ -51,18 +55,20 @@ export function tablesLines({ aims, quick, data }) {
 const milliseconds = (value) => fixed(value, value < 10 ? 2 : value < 100 ? 1 : 0);
 const unique = (values) => [...new Set(values)];
 
-/** Medians of the stages and the aims, from the JSON of the bench. */
+/** Medians of the stages, one cell for browser and native, and the aims, from the JSON of the bench. */
 export function benchLines({ rows, aims, machine, surface, lightName, quick }) {
-  const from = `Version ${version()}${quick ? ", the quick selection (`--quick`)" : ""}; ${surface}, light ${lightName}; ${machine}. Milliseconds, medians.`;
+  const places = unique(rows.map(({ where }) => where.split(", ")[0]));
+  const from = `Version ${version()}${quick ? ", the quick selection (`--quick`)" : ""}; ${surface}, light ${lightName}; ${machine}. Milliseconds, medians: ${places.join(" / ")}.`;
   const sizes = unique(rows.map(({ size }) => size));
-  const kinds = unique(rows.map(({ stage, where }) => `${stage}\n${where}`)).map((kind) => kind.split("\n"));
-  const cell = (stage, where, size) =>
-    rows.find((row) => row.stage === stage && row.where === where && row.size === size)?.milliseconds.median;
-  const times = kinds.map(([stage, where]) => [
-    stage,
-    where,
-    ...sizes.map((size) => milliseconds(cell(stage, where, size))),
-  ]);
+  // What follows the place is the number of workers, as in "browser, 2 workers".
+  const workers = (where) => where.slice(where.split(", ")[0].length);
+  const names = unique(rows.map(({ stage, where }) => stage + workers(where)));
+  const cell = (name, size) => {
+    const of = (place) =>
+      rows.find((row) => row.stage + workers(row.where) === name && row.where.startsWith(place) && row.size === size);
+    return places.map((place) => milliseconds(of(place)?.milliseconds.median)).join(" / ");
+  };
+  const times = names.map((name) => [name, ...sizes.map((size) => cell(name, size))]);
   const judged = aims.map(({ what, value, unit, limit, met }) => [
     what,
     value === null ? "-" : `${milliseconds(value)} ${unit}`.trim(),
@@ -70,7 +76,34 @@ export function benchLines({ rows, aims, machine, surface, lightName, quick }) {
     verdict(met),
   ]);
   return [
-    ...[from, "", ...table(["stage", "where", ...sizes], [false, false, ...sizes.map(() => true)], times)],
+    ...[from, "", ...table(["stage", ...sizes], [false, ...sizes.map(() => true)], times)],
     ...["", ...table(["aim", "measured", "at most", ""], [false, true, true, false], judged)],
+  ];
+}
+
+/** Times of both sides and their ratios, from the JSON of `npm run bench -- --beside`. */
+export function besideLines({ rows, random, surface, lightName, machine, quick }) {
+  const from = `Version ${version()}${quick ? ", the quick selection (`--quick`)" : ""}; ${surface}, light ${lightName}; ${machine}. Ours / theirs in milliseconds, medians; **theirs / ours**.`;
+  const sizes = unique(rows.map(({ size }) => size));
+  const at = (stage, size) => rows.find((row) => row.stage === stage && row.size === size);
+  const pair = (row) => (row ? `${time(row.ours)} / ${theirTime(row)}` : "-");
+  const cells = (stage) => sizes.flatMap((size) => [pair(at(stage, size)), `**${ratioOf(at(stage, size) ?? {})}**`]);
+  const off = (size, key) => fixed(at("answer", size)?.[key]);
+  const errors = sizes.map((size) => `${off(size, "ourDegrees")} and ${off(size, "theirDegrees")} at ${size}`);
+  const finds = ({ found, medianDegrees, milliseconds: time }) =>
+    `${found} (medians: ${fixed(medianDegrees)} degrees, ${fixed(time / 1000, 2)} s)`;
+  const found = random.map(
+    ({ size, scenes, ours, theirs }) =>
+      `Of ${scenes} random scenes of ${size}, ours finds ${finds(ours)} and theirs ${finds(theirs)}.`,
+  );
+  return [
+    ...[from, ""],
+    ...table(
+      ["stage", ...sizes.flatMap((size) => [size, ""])],
+      [false, ...sizes.flatMap(() => [true, true])],
+      unique(rows.map(({ stage }) => stage)).map((stage) => [stage, ...cells(stage)]),
+    ),
+    ...["", `The answers are ${errors.join(", ")} degrees off, ours first.`],
+    ...found,
   ];
 }

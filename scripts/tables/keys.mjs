@@ -34,7 +34,7 @@ const KEYS = {
   figure6: ["overlap", "error"],
   figure7: ["name", "holesBefore", "holesAfter", "normalChange"],
   refinement: ["lightName", "before", "after", "holes"],
-  sensors: ["object", "before", "after", "ratio"],
+  sensors: ["object", "before", "after", "ratio", "blur", "overBlur", "rms", "blurRms", "rmsOverBlur"],
   photographs: ["object", "image", "beta", "degrees", "status"],
   conditions: ["object", "condition", "beta", "degrees", "status"],
   rgbd: ["name", "turned", "start", "degrees", "inPlane", "tilt", "lateral", "along", "status"],

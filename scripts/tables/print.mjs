@@ -132,13 +132,29 @@ const refinement = (rows) =>
     ]),
   ]);
 
-const sensors = (rows) =>
-  columns([
-    ["sensor", "object", "half", "before", "after", "ratio", "of means", "status"],
-    ...rows.map(({ sensor, object, half, before, after, ratio, meanRatio, status }) => [
-      ...[sensor, object, half, fixed(before), fixed(after), `x${fixed(ratio, 2)}`, `x${fixed(meanRatio, 2)}`, status],
+function sensors(rows) {
+  const sized = (error, sigma) => `${fixed(error)} (${sigma})`;
+  const times = (ratio) => `x${fixed(ratio, 2)}`;
+  return columns([
+    [
+      ...["sensor", "object", "half", "before", "after", "ratio", "of means"],
+      ...["blur", "blur / ours", "RMS", "of blur", "blur / ours", "status"],
+    ],
+    ...rows.map((row) => [
+      ...[
+        row.sensor,
+        row.object,
+        row.half,
+        fixed(row.before),
+        fixed(row.after),
+        times(row.ratio),
+        times(row.meanRatio),
+      ],
+      ...[sized(row.blur, row.blurSigma), times(row.overBlur)],
+      ...[fixed(row.rms), sized(row.blurRms, row.blurRmsSigma), times(row.rmsOverBlur), row.status],
     ]),
   ]);
+}
 
 function photographs(rows) {
   const [betas, images] = [unique(rows.map(({ beta }) => beta)), unique(rows.map(({ image }) => image))];

@@ -19,6 +19,7 @@ test("a region is replaced as a whole, and what surrounds it stays", () => {
   for (const [path, name] of [
     ["docs/accuracy.md", "tables"],
     ["docs/performance.md", "bench"],
+    ["docs/performance.md", "beside"],
     ["docs/lab/results.md", "ablation"],
   ]) {
     const text = readFileSync(inRoot(path), "utf8");
@@ -52,7 +53,12 @@ test("the benches' medians stand by stage and size", () => {
     { what: "another", value: null, unit: "ms", limit: 5, met: null },
   ];
   const lines = benchLines({
-    rows: [row("browser", "32x32", 1.234), row("browser", "64x64", 234.5), row("native", "32x32", 1)],
+    rows: [
+      row("browser", "32x32", 1.234),
+      row("browser", "64x64", 234.5),
+      row("native", "32x32", 1),
+      row("browser, 2 workers", "32x32", 0.7),
+    ],
     aims,
     machine: "m, load 9.0",
     surface: "bust",
@@ -61,10 +67,10 @@ test("the benches' medians stand by stage and size", () => {
   });
   assert.match(lines[0], /quick.*load 9\.0/);
   assert.ok(
-    lines.includes("| step | browser | 1.23 | 235 |") || lines.includes("| step | browser | 1.23 | 234 |"),
+    lines.includes("| step | 1.23 / 1.00 | 235 / - |") || lines.includes("| step | 1.23 / 1.00 | 234 / - |"),
     lines.join("\n"),
   );
-  assert.ok(lines.includes("| step | native | 1.00 | - |"));
+  assert.ok(lines.includes("| step, 2 workers | 0.70 / - | - / - |"));
   assert.ok(
     lines.includes("| a step | 12.3 ms | 20 ms | ok |") && lines.includes("| another | - | 5 ms | not measured |"),
   );

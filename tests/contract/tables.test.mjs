@@ -6,6 +6,7 @@ import { show, showAims } from "../../scripts/tables/print.mjs";
 import { aims } from "../../protocols/aims.mjs";
 import { randomRow } from "../../protocols/counts.mjs";
 import { TABLES } from "../../protocols/index.mjs";
+import { BLURS, bestBlur } from "../../protocols/measure-sensors.mjs";
 import { chance, drawGaussian, mean, median, quantile } from "../../protocols/numbers.mjs";
 import * as rotations from "../../protocols/rotations.mjs";
 import { drawScene } from "../../protocols/anywhere.mjs";
@@ -192,6 +193,56 @@ describe("aims", () => {
     const table = TABLES.find(({ name }) => name === "table2A");
     assert.ok(show(table, table2A).some((line) => line.includes("0.001000")));
     assert.ok(show(table, []).includes("  nothing to show"));
+  });
+});
+
+describe("the blur that refined depth is compared with", () => {
+  const side = 24;
+  const heights = Float64Array.from({ length: side ** 2 }, (_, index) => 50 + 0.2 * (index % side));
+  const errorsTo = (truth) => (found) =>
+    [...truth.keys()].filter((k) => truth[k] > 0).map((k) => Math.abs(found[k] - truth[k]));
+
+  test("smooths noise, and leaves a map without noise as it is", () => {
+    const dice = chance(5);
+    const noisy = heights.map((height) => height + 0.5 * dice.gaussian());
+    const best = bestBlur({ width: side, height: side, data: noisy }, errorsTo(heights));
+    const plain = bestBlur({ width: side, height: side, data: heights }, errorsTo(heights));
+    assert.ok(best.blurRms < 0.25 && best.blurRmsSigma > 0.5 && BLURS.includes(best.blurSigma), JSON.stringify(best));
+    assert.deepEqual([plain.blur, plain.blurSigma, plain.blurRms, plain.blurRmsSigma], [0, 0, 0, 0]);
+  });
+
+  test("takes no part of what is off the mask or not measured", () => {
+    const flat = heights.map(() => 50);
+    const mask = flat.map((_, index) => (index % side < 12 ? 1 : 0));
+    const data = flat.map((height, index) => (index % 7 === 0 ? 0 : mask[index] ? height + (index % 2) : 900));
+    const truth = data.map((value, index) => (mask[index] && value > 0 ? 50.5 : NaN));
+    const { blur, blurRms } = bestBlur({ width: side, height: side, mask, data }, errorsTo(truth));
+    assert.ok(blur < 0.2 && blurRms < 0.2, `${blur} ${blurRms}`);
+  });
+
+  test("is judged by sensor and half, and by the RMS errors of all", () => {
+    const row = (sensor, half, overBlur, rmsOverBlur) => ({
+      ...{ sensor, half, overBlur, rmsOverBlur, object: "o", before: 2, after: 1, ratio: 2, meanRatio: 2 },
+      ...{ blur: 1, blurSigma: 0.8, rms: 1, blurRms: 1.5, blurRmsSigma: 0.6, status: "converged" },
+    });
+    const rows = [
+      row("mitten", "tuned", 1.2, 0.9),
+      row("scan, render", "tuned", 1.9, 1.1),
+      row("scan, render", "held out", 2.1, 1.1),
+    ];
+    const said = aims({ sensors: rows }).filter(({ what }) => what.includes("best blur"));
+    const verdicts = said.map(({ what, measured, ok }) => [what.split(":")[0], measured, ok]);
+    assert.deepEqual(verdicts, [
+      ["mitten", 1.2, true],
+      ["scan, render, tuned", 1.9, false],
+      ["scan, render, held out", 2.1, true],
+      ["tuned", 0.5, false],
+      ["held out", 1, true],
+    ]);
+    const table = TABLES.find(({ name }) => name === "sensors");
+    assert.ok(
+      show(table, rows).some((line) => /mitten .* 1\.000 \(0\.8\) +x1\.20 .* 1\.500 \(0\.6\) +x0\.90 /.test(line)),
+    );
   });
 });
 

@@ -1,5 +1,6 @@
 // The browser's half of the bench: the built package in a module worker, as on the page. Each request gets one answer.
 import init, { Estimator } from "/pkg/index.js";
+import { runLoop, sceneOf } from "./runs.js";
 
 /** The module's memory, captured during instantiation, because the package does not expose it. */
 let memory;
@@ -16,64 +17,7 @@ let scene;
 
 /** Reads a file written by scenes.mjs. */
 async function read(path) {
-  const buffer = await (await fetch(path)).arrayBuffer();
-  const [width, height] = new Uint32Array(buffer, 0, 2);
-  const [scale, ...rest] = new Float64Array(buffer, 8, 13);
-  const views = new Float32Array(buffer, 8 + 8 * 13);
-  const pixels = width * height;
-  const [colours, depth] = [views.subarray(0, 3 * pixels), views.subarray(3 * pixels)];
-  const mask = (inside) => Uint8Array.from({ length: pixels }, (_, index) => (inside(index) ? 255 : 0));
-  scene = {
-    image: { width, height, data: colours, mask: mask((index) => !Number.isNaN(colours[3 * index])) },
-    depth: { width, height, data: depth, mask: mask((index) => !Number.isNaN(depth[index])) },
-    pose: { scale, rotation: rest.slice(0, 9), translation: rest.slice(9) },
-  };
-}
-
-/** Angle between two rotations. */
-function degreesBetween(a, b) {
-  const distance = Math.hypot(...a.map((value, index) => value - b[index]));
-  return (2 * Math.asin(Math.min(1, distance / Math.sqrt(8))) * 180) / Math.PI;
-}
-
-/** Yields to the event loop, so that messages of the workers that share a search can arrive. */
-const breathe = () =>
-  new Promise((resume) => {
-    const { port1, port2 } = new MessageChannel();
-    port1.onmessage = resume;
-    port2.postMessage(null);
-  });
-
-/**
- * Runs a loop to its end or through `most` iterations, as `run` of benches/common does. Stages carry the package's own times. With
- * several workers, an iteration is one step, which waits for them; `shared` has the wall times.
- */
-async function run({ start, shading, most, workers }) {
-  const { image, depth, pose } = scene;
-  const begun = performance.now();
-  const estimator = new Estimator(image, depth, { start: start === "search" ? "search" : pose, shading, workers });
-  let { report } = estimator;
-  const preparation = performance.now() - begun;
-  const [stages, shared] = [[], []];
-  let longestSlice = 0;
-  while (report.status === "running" && report.iteration < most) {
-    const { iteration } = report;
-    const before = performance.now();
-    if (workers > 1 && !(start === "search" && report.iteration === 0)) {
-      report = await estimator.run({ maxIterations: 1 });
-      shared.push({ iteration, milliseconds: performance.now() - before });
-      continue;
-    }
-    report = estimator.stepStage();
-    // Wall time of the call, during which no other event is handled.
-    if (report.stage === "search") longestSlice = Math.max(longestSlice, performance.now() - before);
-    stages.push({ stage: report.stage, iteration, milliseconds: report.milliseconds[report.stage] });
-    if (workers > 1 && report.stage === "search") await breathe();
-  }
-  const milliseconds = performance.now() - begun;
-  estimator.free();
-  const degrees = degreesBetween(report.pose.rotation, pose.rotation);
-  return { status: report.status, iterations: report.iteration, degrees, milliseconds, preparation, longestSlice, stages, shared };
+  scene = sceneOf(await (await fetch(path)).arrayBuffer());
 }
 
 /** Time from loading the package to the first report. */
@@ -108,7 +52,7 @@ async function frame() {
 const ANSWERS = {
   scene: ({ path }) => read(path),
   init: () => init(),
-  run,
+  run: (request) => runLoop(Estimator, scene, request),
   firstReport,
   frame,
   memory: () => memory.buffer.byteLength,
