@@ -42,9 +42,9 @@ impl Silhouette {
         self.bilinear(&self.outside, place)
     }
 
-    /// Distance to the mask. Beyond the frame it grows with the distance from the frame.
+    /// Distance to the mask; beyond the frame see [`beyond_frame`](Self::beyond_frame).
     pub fn beyond_frame_at(&self, place: [f64; 2]) -> f64 {
-        self.bilinear(&self.outside, place).0 + self.off_frame(place)
+        self.beyond_frame(place, self.bilinear(&self.outside, place).0)
     }
 
     /// Signed distance to the border and its derivative; beyond the frame as in [`at`](Self::at).
@@ -52,13 +52,10 @@ impl Silhouette {
         self.bilinear(&self.signed, place)
     }
 
-    /// Signed distance to the border, and its gradient over several pixels. Beyond the frame it grows with the distance
-    /// from the frame.
+    /// Signed distance to the border, and its gradient over several pixels; beyond the frame see
+    /// [`beyond_frame`](Self::beyond_frame).
     pub fn smoothly_signed_at(&self, place: [f64; 2]) -> (f64, [f64; 2]) {
-        let value = |place: [f64; 2]| {
-            let (value, off) = (self.bilinear(&self.signed, place).0, self.off_frame(place));
-            if off > 0.0 { value.max(0.0) + off } else { value }
-        };
+        let value = |place| self.beyond_frame(place, self.bilinear(&self.signed, place).0);
         let gradient = [0, 1].map(|axis| {
             let beside = |by: f64| value(std::array::from_fn(|k| if k == axis { place[k] + by } else { place[k] }));
             (beside(SMOOTHING) - beside(-SMOOTHING)) / (2.0 * SMOOTHING)
@@ -66,10 +63,13 @@ impl Silhouette {
         (value(place), gradient)
     }
 
-    /// Distance of a position from the frame; zero inside.
-    fn off_frame(&self, place: [f64; 2]) -> f64 {
+    /// Distance beyond the frame, from the `distance` of the nearest position inside. It grows with the distance from the
+    /// frame, but not where the frame cuts the object off, because the object may continue there. The growth sets in
+    /// gradually, so that the distance is continuous where the mask's border meets the frame.
+    fn beyond_frame(&self, place: [f64; 2], distance: f64) -> f64 {
         let [x, y] = self.within(place);
-        (place[0] - x).hypot(place[1] - y)
+        let off_frame = (place[0] - x).hypot(place[1] - y);
+        distance + off_frame * (distance / SMOOTHING).clamp(0.0, 1.0)
     }
 
     fn within(&self, [column, row]: [f64; 2]) -> [f64; 2] {
@@ -179,9 +179,25 @@ mod tests {
     }
 
     #[test]
+    fn an_object_that_the_frame_cuts_off_continues_beyond_it() {
+        let inside = |(column, row): (usize, usize)| (column as f64 - 2.0).hypot(row as f64 - 15.0) <= 9.0;
+        let mask: Vec<bool> = (0..SIZE.len()).map(|index| inside(SIZE.position(index))).collect();
+        let cut = Silhouette::new(SIZE, &mask);
+        for column in [-3.0, -20.0, -300.0] {
+            assert!(cut.smoothly_signed_at([column, 15.0]).0 < 0.0 && cut.beyond_frame_at([column, 15.0]) == 0.0);
+            // Where the frame is off the mask, the object does not continue.
+            assert!(cut.smoothly_signed_at([column, 31.0]).0 > 6.0 - column, "{column}");
+        }
+        // No step along a line beyond the frame.
+        let along = |row: i32| cut.smoothly_signed_at([-10.0, 0.1 * f64::from(row)]).0;
+        let largest = (0..320).map(|row| (along(row + 1) - along(row)).abs()).fold(0.0, f64::max);
+        assert!(largest < 0.5, "{largest}");
+    }
+
+    #[test]
     fn a_mask_of_one_pixel_has_distances_as_well() {
         let silhouette = Silhouette::new(Size { width: 1, height: 1 }, &[true]);
-        assert_eq!((silhouette.at([0.3, -2.0]).0, silhouette.beyond_frame_at([4.0, 3.0])), (0.0, 5.0));
+        assert_eq!((silhouette.at([0.3, -2.0]).0, silhouette.beyond_frame_at([4.0, 3.0])), (0.0, 0.0));
     }
 
     #[test]

@@ -39,7 +39,7 @@ fn perspective(light_name: &str) -> Sample {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Paint {
+enum Albedo {
     None,
     /// Four albedos in a pattern.
     Patches,
@@ -50,15 +50,15 @@ enum Paint {
 }
 
 /// Albedo that no shading explains, on a dark background.
-fn painted(sample: &Sample, kind: Paint) -> ColourSamples {
-    let paints = [[0.8, 0.2, 0.1], [0.1, 0.6, 0.2], [0.2, 0.2, 0.7], [0.9, 0.9, 0.3]];
-    let paint = |index: usize| {
+fn varying(sample: &Sample, kind: Albedo) -> ColourSamples {
+    let palette = [[0.8, 0.2, 0.1], [0.1, 0.6, 0.2], [0.2, 0.2, 0.7], [0.9, 0.9, 0.3]];
+    let pattern = |index: usize| {
         let (column, row) = sample.image.size.position(index);
         if !sample.image.mask[index] {
             return [0.02; 3];
         }
-        if kind == Paint::Patches {
-            return paints[(column / 5 + 2 * (row / 7) + (column + row) / 11) % 4];
+        if kind == Albedo::Patches {
+            return palette[(column / 5 + 2 * (row / 7) + (column + row) / 11) % 4];
         }
         if (index as u64 * 2_654_435_761) >> 7 & 3 < 2 { [0.04; 3] } else { [0.9; 3] }
     };
@@ -71,11 +71,11 @@ fn painted(sample: &Sample, kind: Paint) -> ColourSamples {
     };
     let shaded = |index: usize| {
         let colours = [0, 1, 2].map(|channel| sample.image.colours[3 * index + channel]);
-        if kind == Paint::Dirt && sample.image.mask[index] {
+        if kind == Albedo::Dirt && sample.image.mask[index] {
             return dirty(index, colours);
         }
         let shading = colours.iter().sum::<f32>() / 3.0;
-        paint(index).map(|paint: f32| if sample.image.mask[index] { paint * (0.5 + shading) } else { paint })
+        pattern(index).map(|albedo: f32| if sample.image.mask[index] { albedo * (0.5 + shading) } else { albedo })
     };
     ColourSamples::RgbLinear((0..sample.image.size.len()).flat_map(shaded).collect())
 }
@@ -94,10 +94,10 @@ fn told(pose: &Similarity) -> Options {
     }
 }
 
-fn run(sample: &Sample, paint: Paint, options: Options) -> StepReport {
+fn run(sample: &Sample, albedo: Albedo, options: Options) -> StepReport {
     let mut image = sample.colour_image();
-    if paint != Paint::None {
-        image.samples = painted(sample, paint);
+    if albedo != Albedo::None {
+        image.samples = varying(sample, albedo);
     }
     let mut estimator = Estimator::new(image, &sample.depth_map(), options).unwrap();
     while estimator.report().status == Status::Running {
@@ -114,8 +114,8 @@ fn middle(sample: &Sample) -> Vector3<f64> {
 fn what_never_moved_has_no_sigmas() {
     let sample = perspective("window");
     let start = turned_about_the_sensor(&sample, Vector3::y(), 2.0);
-    for paint in [Paint::None, Paint::Patches] {
-        let report = run(&sample, paint, Options { registration: Registration::Icp, ..told(&start) });
+    for albedo in [Albedo::None, Albedo::Patches] {
+        let report = run(&sample, albedo, Options { registration: Registration::Icp, ..told(&start) });
         let moved = report.pose.translation != start.translation || report.pose.degrees_to(&start) > 0.0;
         assert_eq!(report.uncertainty.is_some(), moved, "{report:?}");
     }
@@ -132,13 +132,13 @@ mod long {
         let sample = perspective("window");
         let middle = middle(&sample);
         for (degrees, distance, off) in [(1.0, 2.0, 4.0), (30.0, 3.0, 6.0), (5.0, 100.0, 8.0), (0.1, 0.1, 1.0)] {
-            for paint in [Paint::None, Paint::Patches] {
+            for albedo in [Albedo::None, Albedo::Patches] {
                 let start = turned_about_the_sensor(&sample, Vector3::new(0.5, 1.0, 0.0), off);
                 let start_tolerance = StartTolerance { degrees, distance: Some(distance) };
-                let report = run(&sample, paint, Options { start_tolerance, ..told(&start) });
+                let report = run(&sample, albedo, Options { start_tolerance, ..told(&start) });
                 let moved = (report.pose.apply(middle) - start.apply(middle)).norm();
                 let turned = report.pose.degrees_to(&start);
-                let tolerance = format!("{degrees} {distance} {off} {}: {turned} {moved}", paint != Paint::None);
+                let tolerance = format!("{degrees} {distance} {off} {}: {turned} {moved}", albedo != Albedo::None);
                 assert!(turned <= degrees && moved <= distance, "{tolerance}");
                 // A pose beyond the tolerance cannot be found, and the status says so.
                 if off > degrees {
@@ -156,10 +156,10 @@ mod long {
     fn a_start_turned_about_the_sensor_comes_home_under_an_unknown_light() {
         for (name, axis) in [("window", Vector3::new(0.3, 1.0, 0.1)), ("colourful", Vector3::new(1.0, -0.4, 0.2))] {
             let sample = perspective(name);
-            let searched = run(&sample, Paint::None, Options::default());
+            let searched = run(&sample, Albedo::None, Options::default());
             for degrees in [1.0, 3.0, 8.0] {
                 let start = turned_about_the_sensor(&sample, axis, degrees);
-                let report = run(&sample, Paint::None, told(&start));
+                let report = run(&sample, Albedo::None, told(&start));
                 let (error, apart) = (report.pose.degrees_to(&sample.pose), report.pose.degrees_to(&searched.pose));
                 assert!(error < 2.0 && apart < 0.2, "{name}, {degrees}: {error} {apart} {report:?}");
                 assert_ne!(report.status, Status::Lost, "{name}, {degrees}");
@@ -168,15 +168,15 @@ mod long {
     }
 
     #[test]
-    fn outlines_find_a_painted_object_of_which_nothing_is_known() {
+    fn silhouettes_find_an_object_of_varying_albedo_of_which_nothing_is_known() {
         let sample = perspective("window");
-        let report = run(&sample, Paint::Patches, Options::default());
+        let report = run(&sample, Albedo::Patches, Options::default());
         assert!(report.pose.degrees_to(&sample.pose) < 10.0, "{report:?}");
         let middle = middle(&sample);
         let off = report.pose.apply(middle) - sample.pose.apply(middle);
         assert!(off.xy().norm() < 4.0, "{off} {report:?}");
         // With a single albedo, photometric registration determines the pose.
-        let plain = run(&sample, Paint::None, Options::default());
+        let plain = run(&sample, Albedo::None, Options::default());
         let by_silhouettes = matches!(plain.reason, Some(Reason::AlbedoVaries { .. } | Reason::SilhouetteBlind { .. }));
         assert!(plain.pose.degrees_to(&sample.pose) < 2.0 && !by_silhouettes, "{plain:?}");
     }
@@ -184,7 +184,7 @@ mod long {
     /// Silhouettes move what the depth camera sees until it fills the mask, and the first search places the object as far
     /// away as the depth camera is.
     #[test]
-    fn a_painted_object_is_found_though_the_depth_camera_sees_a_part_of_it_from_nearer() {
+    fn an_object_of_varying_albedo_is_found_though_the_depth_camera_sees_a_part_of_it_from_nearer() {
         let request = SampleRequest {
             rotation: Angles { alpha: -5.0, beta: 10.0, gamma: 5.0 }.rotation(),
             overlap: 0.5,
@@ -192,20 +192,20 @@ mod long {
             ..request("colourful")
         };
         let sample = sampled(&request);
-        let report = run(&sample, Paint::Dirt, Options::default());
+        let report = run(&sample, Albedo::Dirt, Options::default());
         let middle = middle(&sample);
         let off = report.pose.apply(middle) - sample.pose.apply(middle);
         assert!(report.pose.degrees_to(&sample.pose) < 2.0 && off.norm() < 3.0, "{off} {report:?}");
     }
 
     #[test]
-    fn outlines_find_the_place_of_a_painted_object_whose_rotation_alone_is_told() {
+    fn silhouettes_find_the_place_of_an_object_whose_rotation_alone_is_told() {
         let sample = perspective("window");
         let middle = middle(&sample);
         for degrees in [0.0, 3.0] {
             let start = turned_about_the_sensor(&sample, Vector3::new(0.2, 1.0, 0.3), degrees);
             let rotation_alone = Start::Pose { rotation: start.rotation, scale: None, translation: None };
-            let report = run(&sample, Paint::Patches, Options { start: rotation_alone, ..Options::default() });
+            let report = run(&sample, Albedo::Patches, Options { start: rotation_alone, ..Options::default() });
             let off = report.pose.apply(middle) - sample.pose.apply(middle);
             assert!(off.xy().norm() < 1.5, "{off} {report:?}");
             assert!(report.pose.degrees_to(&sample.pose) < 3.5, "{report:?}");
@@ -213,12 +213,12 @@ mod long {
     }
 
     #[test]
-    fn outlines_bring_a_painted_object_home() {
+    fn silhouettes_bring_an_object_of_varying_albedo_home() {
         let sample = perspective("window");
         let middle = middle(&sample);
         for (axis, degrees) in [(Vector3::new(0.2, 1.0, 0.3), 3.0), (Vector3::new(1.0, 0.1, -0.5), 4.0)] {
             let start = turned_about_the_sensor(&sample, axis, degrees);
-            let report = run(&sample, Paint::Patches, told(&start));
+            let report = run(&sample, Albedo::Patches, told(&start));
             let off = |pose: &Similarity| pose.apply(middle) - sample.pose.apply(middle);
             let (before, after) = (off(&start), off(&report.pose));
             // A pixel measures one unit at the object.
@@ -234,6 +234,21 @@ mod long {
         }
     }
 
+    /// The mask ends at the frame, but the object does not.
+    #[test]
+    fn a_frame_that_cuts_the_object_in_half_does_not_pull_it_inside() {
+        let Camera::Pinhole(camera) = pinhole(288.0) else { unreachable!() };
+        let off_centre = Camera::Pinhole(Pinhole { cx: 95.0, ..camera });
+        let sample = sampled(&SampleRequest { image_camera: off_centre, ..request("colourful") });
+        let middle = middle(&sample);
+        for degrees in [0.0, 2.0] {
+            let start = turned_about_the_sensor(&sample, Vector3::new(0.2, 1.0, 0.3), degrees);
+            let report = run(&sample, Albedo::Dirt, told(&start));
+            let off = report.pose.apply(middle) - sample.pose.apply(middle);
+            assert!(report.pose.degrees_to(&sample.pose) < 2.5 && off.xy().norm() < 1.0, "{off} {report:?}");
+        }
+    }
+
     #[test]
     fn fine_print_is_not_taken_for_noise_that_explains_the_colours() {
         // Letters of one pixel are uncorrelated between neighbours, as noise is; only their amplitude distinguishes them from a camera's noise.
@@ -241,7 +256,7 @@ mod long {
         let middle = middle(&sample);
         for (axis, degrees) in [(Vector3::new(0.2, 1.0, 0.3), 3.0), (Vector3::new(1.0, 0.1, -0.5), 4.0)] {
             let start = turned_about_the_sensor(&sample, axis, degrees);
-            let report = run(&sample, Paint::FinePrint, told(&start));
+            let report = run(&sample, Albedo::FinePrint, told(&start));
             let off = |pose: &Similarity| (pose.apply(middle) - sample.pose.apply(middle)).xy().norm();
             assert!(off(&report.pose) < 1.5 && off(&start) > 10.0, "{} {report:?}", off(&report.pose));
             let by_silhouettes =

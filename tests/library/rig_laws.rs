@@ -130,6 +130,24 @@ mod long {
     use super::test;
     use super::*;
 
+    /// The first candidate is so far off that a single search would end 6 degrees off.
+    #[test]
+    fn candidates_far_off_lead_to_one_estimate() {
+        let size = Size { width: 160, height: 120 };
+        let request =
+            RigRequest { colour_size: Some(size), depth_size: Some(size), ..RigRequest::new(RigKind::Boxes, 1, 0) };
+        let frame = render(&request).expect("a frame");
+        let axes = [Vector3::new(1.0, 0.3, 0.2), Vector3::new(-0.3, 1.0, -0.2), Vector3::new(0.2, -0.8, 1.0)];
+        for axis in axes {
+            let turn = axis.normalize() * 8_f64.to_radians();
+            let candidate = turned(&frame.pose, turn, Vector3::new(0.08, -0.02, 0.03));
+            let report = check(view(&frame, true), &[candidate], &Cue::ALL);
+            let off = (report.estimate.translation - frame.pose.translation).norm();
+            assert!(report.estimate.degrees_to(&frame.pose) < 0.5 && off < 0.01, "{off} {report:?}");
+            assert_eq!(report.candidates[0].verdict, CheckVerdict::Off);
+        }
+    }
+
     proptest! {
         #![proptest_config(laws(10))]
 

@@ -3,7 +3,8 @@
 //!
 //! A point off the mask is a residual like any other. Far off, it costs a fixed share of the square of the robust
 //! scale, which is the cost of a point whose colours do not fit at all. Pixels of the mask that no point covers cost
-//! nothing, because the depth camera may not have seen that part of the object.
+//! nothing, because the depth camera may not have seen that part of the object. Points beyond the frame cost nothing,
+//! either, where the frame cuts the object off.
 //!
 //! An object that recedes shrinks into its mask and onto pixels that are easily explained. Its distance is therefore
 //! freed last. On blurred levels the Gaussian almost fixes it.
@@ -181,6 +182,15 @@ mod tests {
         let [small, large] = [(15.0, 8.0), (8.0, 15.0)].map(|(mask, object)| views(mask, object));
         assert_eq!(sums(&small, here, &here, &FRAME).cost, 0.0);
         assert!(sums(&large, here, &here, &FRAME).cost > 0.01);
+    }
+
+    #[test]
+    fn points_beyond_a_frame_that_cuts_the_object_off_cost_nothing() {
+        let here = Similarity::identity();
+        let beyond = Similarity { translation: Vector3::x() * 0.3, ..here };
+        let [cut, whole] = [40.0, 15.0].map(|mask| views(mask, 8.0));
+        assert_eq!(sums(&cut, beyond, &beyond, &FRAME).cost, 0.0);
+        assert!(sums(&whole, beyond, &beyond, &FRAME).cost > 0.01);
     }
 
     #[test]
