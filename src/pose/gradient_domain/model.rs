@@ -12,7 +12,8 @@ const NU: f32 = 1.0;
 /// The same for the covariance of the channels, and the number of reweighted estimates of it.
 const NU_OF_CHANNELS: f64 = 4.0;
 const CHANNEL_FITS: usize = 4;
-/// Error of a normal, radians, which neighbours do not share, set on photographs (docs/lab/thresholds.md). It limits the weight of the finest shading.
+/// Error of a normal, radians, which neighbours do not share, set on photographs (docs/lab/thresholds.md). It limits the
+/// weight of the finest shading.
 const DELTA: f32 = 0.05;
 /// Each pixel belongs to pairs in four directions, which count it twice.
 const COUNTED: f32 = 2.0;
