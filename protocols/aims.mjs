@@ -1,4 +1,6 @@
 // The project's aims, computed only from the rows of the tables.
+import { aim } from "./aim.mjs";
+import { softAims, unseenAims } from "./aims-smooth-albedo.mjs";
 import { FOUND_WITHIN, coverage3, isConfidentlyWrong, isFlagged, isFound, isFoundOrFlagged } from "./counts.mjs";
 import { IMAGES } from "./reals.mjs";
 import { CONDITIONS } from "./conditions.mjs";
@@ -8,13 +10,6 @@ import { mean, median, quantile, share, worst } from "./numbers.mjs";
 import { degreesBetween } from "./rotations.mjs";
 
 const least = (values) => (values.length === 0 ? null : Math.min(...values));
-
-/** One aim: a measured value against a limit, in the sense "<=" or ">="; without rows, the verdict is null. */
-function aim(table, what, measured, sense, limit, rows) {
-  const known = typeof measured === "number" && rows > 0;
-  const ok = known ? (sense === "<=" ? measured <= limit : measured >= limit) : null;
-  return { table, what, measured: known ? measured : null, sense, limit, rows, ok };
-}
 
 function table1Aims(rows = []) {
   const grid = rows.filter(({ protocol }) => protocol === "2A");
@@ -434,12 +429,14 @@ export const aims = (json) =>
     ...(json.sensors ? sensorsAims(json.sensors) : []),
     ...(json.photographs ? photographsAims(json.photographs) : []),
     ...(json.conditions ? conditionsAims(json.conditions) : []),
+    ...unseenAims(json.unseen),
     ...(json.rgbd ? rgbdAims(json.rgbd) : []),
     ...(json.pinhole ? pinholeAims(json.pinhole) : []),
     ...(json.albedo ? albedoAims(json.albedo) : []),
     ...randomAims(json.random),
     ...paintedAims("cameras", json.cameras),
     ...paintedAims("painted", json.painted),
+    ...softAims(json.soft),
     ...paintedAims("stress", json.stress),
     ...honestyAims(json.honesty),
     ...(json.exposure ? exposureAims(json.exposure) : []),

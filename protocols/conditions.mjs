@@ -6,7 +6,7 @@ import { FROM_ANYWHERE } from "./scenes.mjs";
 const UNDER_LAMPS = ["turtle", "squirrel", "deer", "paper1"];
 const LAMPS = ["lab_light01", "lab_light05", "lab_light09"];
 /** Error of a given initial pose about the object's middle, degrees. */
-const OFF = 8;
+export const OFF = 8;
 const LARGE = 128;
 
 /** The changes that make each condition; the aims refer to the kind of a condition. */

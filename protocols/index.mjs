@@ -9,9 +9,11 @@ import { perturbation } from "./perturbation.mjs";
 import { figure6, table1, table2A, table2B } from "./poses.mjs";
 import { albedo, figure7, photographs, table3 } from "./reals.mjs";
 import { sensors } from "./sensors.mjs";
+import { soft } from "./soft.mjs";
 import { statue } from "./statue.mjs";
 import { stress } from "./stress.mjs";
 import { figure4, figure5, refinement } from "./shapes.mjs";
+import { unseen } from "./unseen.mjs";
 
 /** In the order of printing. */
 export const TABLES = [
@@ -21,6 +23,7 @@ export const TABLES = [
     sensors,
     photographs,
     conditions,
+    unseen,
     albedo,
     rgbd,
     statue,
@@ -28,6 +31,7 @@ export const TABLES = [
     random,
     cameras,
     painted,
+    soft,
     stress,
     honesty,
     exposure,

@@ -5,6 +5,7 @@ import { requestOf } from "./scenes.mjs";
 import { measureCamera } from "./cameras.mjs";
 import { measurePerturbed } from "./measure-perturbed.mjs";
 import { measurePainted } from "./painted.mjs";
+import { measureSoft } from "./soft.mjs";
 import { measureHonesty } from "./honesty.mjs";
 import { measureStress } from "./stress.mjs";
 import { measureCapture, measurePinhole, measureStatue } from "./measure-perspective.mjs";
@@ -75,6 +76,7 @@ const KINDS = {
   albedo: measureAlbedo,
   camera: measureCamera,
   painted: measurePainted,
+  soft: measureSoft,
   stress: measureStress,
   honesty: measureHonesty,
   mitten: measureMitten,

@@ -42,6 +42,8 @@ export const FROM_ANYWHERE = {
 export const OBJECTS = ["raccoon", "frog2", "squirrel", "turtle"];
 /** These surfaces and six more, all with measured albedo. */
 export const PAINTED = [...OBJECTS, "deer", "panther", "sun", "paper1", "cup1", "teabag1"];
+/** Objects that no constant was set on. */
+const UNSEEN = ["apple", "dinosaur", "phone", "potato"];
 export const BUILT_IN = ["bust", "vase", "ripples"];
 
 /**
@@ -57,6 +59,7 @@ export const kit = (complete, statues = []) =>
         surfaces: ["mozart", ...OBJECTS, ...BUILT_IN],
         objects: OBJECTS,
         painted: PAINTED,
+        unseen: UNSEEN,
         statues,
       }
     : {
@@ -66,6 +69,7 @@ export const kit = (complete, statues = []) =>
         surfaces: BUILT_IN,
         objects: [],
         painted: [],
+        unseen: [],
         statues,
       };
 

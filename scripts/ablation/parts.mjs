@@ -39,6 +39,17 @@ export const PARTS = [
     ],
   },
   {
+    name: "gradients",
+    what: "the registration in the gradient domain after local contrast",
+    changes: [
+      {
+        file: "src/estimator/contrasted.rs",
+        from: "gradients: gradients.map(Box::new)",
+        to: "gradients: gradients.map(Box::new).filter(|_| false)",
+      },
+    ],
+  },
+  {
     name: "contrast",
     what: "registration by local contrast (photometric registration with a single albedo decides)",
     changes: [{ file: LOCAL_CONTRAST, from: "pair.options.registration == Registration::Joint", to: "false" }],

@@ -37,6 +37,7 @@ const KEYS = {
   sensors: ["object", "before", "after", "ratio", "blur", "overBlur", "rms", "blurRms", "rmsOverBlur"],
   photographs: ["object", "image", "beta", "degrees", "status"],
   conditions: ["object", "condition", "beta", "degrees", "status"],
+  unseen: ["object", "condition", "beta", "degrees", "status"],
   rgbd: ["name", "turned", "start", "degrees", "inPlane", "tilt", "lateral", "along", "status"],
   statue: ["name", "start", "view", "degrees", "lateral", "along", "status"],
   pinhole: ["scene", "start", "degrees", "translation", "status"],
@@ -48,6 +49,10 @@ const KEYS = {
   painted: [
     ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
     ...["coverage1", "coverage3"],
+  ],
+  soft: [
+    ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
+    ...["coverage1", "coverage3", "medianOfAll", "kinds"],
   ],
   cameras: [
     ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
@@ -65,7 +70,7 @@ const KEYS = {
   ablation: ["without", "medianDegrees", "found"],
 };
 /** Tables that need the data beside the project; built-in scenes cannot replace these. */
-const REAL = ["table3", "figure7", "sensors", "photographs", "conditions", "albedo", "rgbd", "statue"];
+const REAL = ["table3", "figure7", "sensors", "photographs", "conditions", "unseen", "albedo", "rgbd", "statue"];
 
 /** Tables without rows, and missing keys of rows. A key may be null, because not every row has a value. */
 export const missingKeys = (json, { realPairs }) =>

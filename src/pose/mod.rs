@@ -6,6 +6,7 @@
 //! | `photometric/` | photometric registration, beyond the paper | robust residuals of log colours + prior of the light | pose and light | Gauss-Newton, the light eliminated; instrumental variables |
 //! | `silhouettes/` | registration from silhouettes, beyond the paper, for varying albedo | depth discontinuities against the image's mask and edges | pose without scale, and the edge bias | Gauss-Newton |
 //! | `contrast/` | registration by local contrast, for varying albedo in an orthographic image | robust residuals with local means removed, silhouette | pose and light | Gauss-Newton, the light eliminated; many initial poses |
+//! | `gradient_domain/` | registration by differences of neighbouring pixels, for smoothly varying albedo | t distribution of differences, silhouette | pose and light | Gauss-Newton, the light eliminated |
 //! | `icp` | Eq. 12: the depth points onto the image surface | robust point-to-plane distance | pose | nearest neighbours and Gauss-Newton, alternating |
 //! | `ransac` | Eq. 13 and 14: consensus of pairs over the linear model P -> A P + t | truncated squared distance | the twelve numbers theta | samples of four pairs, then linear least squares |
 //! | `similarity` | Eq. 15: the similarity nearest to A; Eq. 12 for known pairs, in closed form | least squares | s, R, t | Horn's quaternion |
@@ -30,6 +31,7 @@ mod contrast;
 mod correspondence;
 mod descent;
 mod distance_transform;
+mod gradient_domain;
 mod icp;
 mod increment;
 mod jackknife;
@@ -52,6 +54,7 @@ mod visibility;
 pub use angles::Angles;
 pub(crate) use contrast::{ContrastOutcome, ContrastProblem, ContrastReport, ContrastSearch, register_again};
 pub use correspondence::{CorrespondenceProblem, Correspondences};
+pub(crate) use gradient_domain::{GradientRegistration, GradientReport, combine};
 pub use icp::{Icp, IcpOptions, IcpProblem, IcpReport, IcpTermination, Metric, Pair};
 pub(crate) use increment::rotation_vector;
 pub(crate) use photometric::COARSEST_NEAR;

@@ -205,7 +205,7 @@ mod tests {
 
     fn contrast(sigma: f64, objective: f64) -> Method {
         let (pose, uncertainty) = (Similarity::identity(), uncertainty(sigma, ABOUT_X));
-        Method::Contrast(Box::new(Contrasted::new(ContrastReport { pose, objective, uncertainty })))
+        Method::Contrast(Box::new(Contrasted::new(ContrastReport::of(pose, objective, uncertainty))))
     }
 
     fn silhouettes(sigma: f64, unseen: bool) -> Method {

@@ -4,7 +4,6 @@
 use nalgebra::{Rotation3, Vector3};
 
 use crate::diagnosis::{Alternative, Diagnosis};
-use crate::estimator::contrasted::Contrasted;
 use crate::estimator::decision::{Decision, Method};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
@@ -81,6 +80,12 @@ impl CleanedImage {
     }
 }
 
+/// The search in an image.
+pub struct ByContrast {
+    pub cleaned: CleanedImage,
+    pub search: ContrastSearch,
+}
+
 /// Sizes of the starts relative to the units' scale, if the scale is free. With the middle one alone, objects about a
 /// sixth larger or smaller are missed.
 const SIZES: [f64; 3] = [0.84, 1.0, 1.19];
@@ -110,6 +115,13 @@ pub fn around(pair: &ViewPair, initial: &Similarity) -> Vec<Similarity> {
     turns.map(|turn| turned(TURN.to_radians() * turn)).collect()
 }
 
+/// The method that a finished search leads to.
+pub enum Conclusion {
+    Photometric(Decision),
+    /// The pose of local contrast, and its rivals.
+    Contrast(Box<ContrastReport>, Vec<Similarity>),
+}
+
 /// The outcome of a finished search: the pose of local contrast or, if a photometric registration from there leaves
 /// only noise, the photometric pose.
 pub fn conclude(
@@ -117,7 +129,7 @@ pub fn conclude(
     photometric: &PhotometricRegistration,
     cleaned: &CleanedImage,
     search: &mut ContrastSearch,
-) -> Option<Decision> {
+) -> Option<Conclusion> {
     let image = cleaned.image(pair);
     let problem = photometric.contrast_problem(pair, image);
     let mut contrast = search.outcome(&problem)?;
@@ -135,12 +147,10 @@ pub fn conclude(
     };
     Some(match plain {
         Some(plain) if is_believed(&plain, search) => {
-            Decision { rivals: Some(Vec::new()), ..Decision::of(Method::Photometric(Box::new(plain))) }
+            let by = Method::Photometric(Box::new(plain));
+            Conclusion::Photometric(Decision { rivals: Some(Vec::new()), ..Decision::of(by) })
         }
-        _ => {
-            let found = Contrasted::new(contrast.best);
-            Decision { rivals: Some(contrast.rivals), ..Decision::of(Method::Contrast(Box::new(found))) }
-        }
+        _ => Conclusion::Contrast(Box::new(contrast.best), contrast.rivals),
     })
 }
 

@@ -30,13 +30,14 @@
 //! | `candidates` | the search, and the registration of its candidates |
 //! | `task` | parts of the search that a worker may take, and their results |
 //! | `local_optima` | ends of the registrations; the best pose and its rivals |
-//! | `local_contrast`, `silhouettes` | the methods for varying albedo |
+//! | `local_contrast`, `gradient_domain`, `silhouettes` | the methods for varying albedo |
 //! | `varying_albedo`, `second_search` | behind a pinhole, if nothing is known about the pose: silhouettes and a second search |
 //! | `halved_pair` | the halved pair in which large views are searched |
 //!
 //! The outcome is a [`Decision`].
 
 mod candidates;
+mod gradient_domain;
 mod halved_pair;
 pub mod initial_pose;
 mod local_contrast;
@@ -56,8 +57,9 @@ use super::decision::{Decision, Method};
 use super::pair::ViewPair;
 use super::photometric::PhotometricRegistration;
 use candidates::{Candidates, EVERYWHERE};
+use gradient_domain::InGradients;
 use initial_pose::{InitialEvidence, InitialRegistrations, Progress, TrustRegion, explains};
-use local_contrast::CleanedImage;
+use local_contrast::{ByContrast, Conclusion};
 use local_optima::{Choice, LocalOptima};
 use task::{Finding, Task};
 use varying_albedo::{Progressed, VaryingAlbedo};
@@ -95,14 +97,9 @@ enum Phase {
     Nearby(Box<InitialRegistrations>),
     Candidates(Box<Candidates>),
     Contrast(Box<ByContrast>),
+    Gradients(Box<InGradients>),
     VaryingAlbedo(Box<VaryingAlbedo>),
     Done,
-}
-
-/// The search by local contrast.
-struct ByContrast {
-    cleaned: CleanedImage,
-    search: ContrastSearch,
 }
 
 /// Result of a slice.
@@ -218,6 +215,7 @@ impl Finder {
             Phase::Nearby(nearby) => self.look_nearby(pair, memory, nearby)?,
             Phase::Candidates(candidates) => self.register_candidates(pair, memory, candidates)?,
             Phase::Contrast(contrast) => self.compare_contrast(pair, memory, contrast)?,
+            Phase::Gradients(gradients) => self.refine(pair, memory, gradients)?,
             Phase::VaryingAlbedo(varying) => self.look_despite_albedo(pair, memory, varying),
             Phase::Done => Next::Nothing,
         };
@@ -313,8 +311,24 @@ impl Finder {
         if !search.advance(&photometric.contrast_problem(pair, cleaned.image(pair))) {
             return Ok(Next::Phase(Phase::Contrast(contrast)));
         }
-        let found = local_contrast::conclude(pair, photometric, cleaned, search);
-        self.next_method(pair, memory, found)
+        match local_contrast::conclude(pair, photometric, cleaned, search) {
+            Some(Conclusion::Contrast(best, rivals)) => {
+                let gradients = InGradients::new(pair, photometric, contrast.cleaned, (best, rivals));
+                Ok(Next::Phase(Phase::Gradients(Box::new(gradients))))
+            }
+            Some(Conclusion::Photometric(decision)) => self.next_method(pair, memory, Some(decision)),
+            None => self.next_method(pair, memory, None),
+        }
+    }
+
+    /// A slice of the registration in the gradient domain.
+    fn refine(&mut self, pair: &ViewPair, memory: &mut Memory, mut gradients: Box<InGradients>) -> Result<Next> {
+        let photometric = &*PhotometricRegistration::prepared(memory, pair);
+        if !gradients.advance(pair, photometric) {
+            return Ok(Next::Phase(Phase::Gradients(gradients)));
+        }
+        let found = gradients.decision(pair, photometric);
+        self.next_method(pair, memory, Some(found))
     }
 
     /// A slice of silhouettes and second search without an initial pose.
@@ -386,6 +400,7 @@ impl Phase {
             Self::Contrast(contrast) => {
                 (BEFORE_CONTRAST + (1.0 - BEFORE_CONTRAST) * contrast.search.share(), Activity::ComparingContrast)
             }
+            Self::Gradients(_) => (1.0, Activity::ComparingContrast),
             Self::VaryingAlbedo(varying) => {
                 let (share, activity) = varying.progress();
                 (BEFORE_CONTRAST + (1.0 - BEFORE_CONTRAST) * share, activity)

@@ -1,5 +1,6 @@
 //! The registration stage: runs the finder or matches the surfaces, depending on the options, and keeps the decision.
 
+use crate::estimator::contrasted::Followed;
 use crate::estimator::decision::{Decision, Method};
 use crate::estimator::finder::initial_pose::TrustRegion;
 use crate::estimator::finder::{Beginning, Finder};
@@ -221,8 +222,11 @@ impl RegistrationStage {
         match by {
             Method::Initial(_) | Method::Silhouettes(_) => Ok(None),
             Method::Contrast(found) => {
-                let pose = found.follow(pair, photometric, albedo, self.region.as_ref());
-                Ok(pose.map(|pose| Registered::of(with_gauge_of(pair, pose, start), None)))
+                let followed = found.follow(pair, photometric, albedo, self.region.as_ref());
+                Ok(followed.map(|Followed { pose, uncertainty, rivals }| Registered {
+                    rivals,
+                    ..Registered::of(with_gauge_of(pair, pose, start), uncertainty)
+                }))
             }
             Method::Photometric(found) => {
                 photometric.register_again(pair, found, start, ends)?;

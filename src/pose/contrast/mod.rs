@@ -40,12 +40,17 @@ mod jackknife;
 mod local_means;
 pub(super) use local_means::LocalMeans;
 mod objective;
+pub(super) use objective::by_pose;
 mod prediction;
 mod problem;
 mod registration;
 mod samples;
+pub(super) use samples::Samples;
 mod search;
 mod seen;
+pub(super) use seen::Seen;
+#[cfg(test)]
+pub(super) mod test_scene;
 mod uncertainty;
 
 pub use problem::{ContrastProblem, ContrastReport};

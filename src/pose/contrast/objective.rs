@@ -405,7 +405,11 @@ fn units_term(problem: &ContrastProblem<'_>, pose: &Similarity) -> f64 {
 }
 
 /// Position in the image of a point of the colour view, and its derivative by each unknown.
-fn by_pose(problem: &ContrastProblem<'_>, point: &Vector3<f64>, frame: &Frame) -> Option<([f64; 2], [PoseVector; 2])> {
+pub(in crate::pose) fn by_pose(
+    problem: &ContrastProblem<'_>,
+    point: &Vector3<f64>,
+    frame: &Frame,
+) -> Option<([f64; 2], [PoseVector; 2])> {
     let (place, by_point) =
         problem.image.camera.project_with_gradient(problem.image.size, [point.x, point.y, point.z])?;
     Some((place, by_point.map(|by_point| frame.row(point, &by_point.into()))))

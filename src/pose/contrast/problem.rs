@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::pose::increment::{UNKNOWNS, held_unknowns};
+use crate::pose::increment::{Frame, PoseMatrix, UNKNOWNS, held_unknowns};
 use crate::pose::similarity::Similarity;
 use crate::pose::uncertainty::Uncertainty;
 use crate::view::{ColourView, DepthView, Normals};
@@ -28,12 +28,12 @@ pub struct ContrastProblem<'a> {
 
 impl ContrastProblem<'_> {
     /// Unknowns that keep their values.
-    pub(super) fn held(&self) -> [bool; UNKNOWNS] {
+    pub(in crate::pose) fn held(&self) -> [bool; UNKNOWNS] {
         held_unknowns(&self.image.camera, self.scale_is_held)
     }
 
     /// Image position of a point of the depth view.
-    pub(super) fn place(&self, pose: &Similarity, point: &Vector3<f64>) -> Option<[f64; 2]> {
+    pub(in crate::pose) fn place(&self, pose: &Similarity, point: &Vector3<f64>) -> Option<[f64; 2]> {
         self.image.camera.project(self.image.size, pose.apply(*point).into())
     }
 }
@@ -57,4 +57,16 @@ pub struct ContrastReport {
     pub objective: f64,
     /// One sigma of each number of the pose.
     pub uncertainty: Uncertainty,
+    /// Covariance of the unknowns in this frame, zero for held ones.
+    pub(in crate::pose) covariance: PoseMatrix,
+    pub(in crate::pose) frame: Frame,
+}
+
+impl ContrastReport {
+    /// A report with these sigmas and no covariance.
+    #[cfg(test)]
+    pub fn of(pose: Similarity, objective: f64, uncertainty: Uncertainty) -> Self {
+        let frame = Frame { centre: Vector3::zeros(), length: 1.0 };
+        Self { pose, objective, uncertainty, covariance: PoseMatrix::zeros(), frame }
+    }
 }

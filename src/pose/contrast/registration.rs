@@ -6,14 +6,13 @@ use super::objective::{Level, Objective, State};
 use super::problem::ContrastProblem;
 use super::samples::Samples;
 use super::seen::Seen;
-use super::uncertainty::{Linearised, described};
+use super::uncertainty::{Linearised, PoseCovariance, described};
 use crate::pose::descent::{Damping, Lowered};
 use crate::pose::increment::{Frame, PoseVector};
 use crate::pose::residuals::{FIRST_SCALE, MEASURED_SIDE, SHRINKING};
 use crate::pose::silhouette::Silhouette;
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
-use crate::pose::uncertainty::Uncertainty;
 
 /// Number of levels: the finest, whose blur the caller chooses, and one with a blur of this many pixels. Blurs and
 /// means are for objects of up to 64x64 depth pixels and grow with larger ones.
@@ -210,8 +209,8 @@ impl ContrastRegistration {
         self.course.as_ref().map(|course| course.state.pose)
     }
 
-    /// One sigma of a pose, from its residuals; `None` if too few samples are visible.
-    pub fn uncertainty(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> Option<Uncertainty> {
+    /// The uncertainty of a pose from its residuals; `None` if too few samples are visible.
+    pub fn uncertainty(&mut self, problem: &ContrastProblem<'_>, pose: &Similarity) -> Option<PoseCovariance> {
         let mut state = State { pose: *pose, light: Lights::default() };
         self.objective.expect_size(pose);
         let by_sectors = self.jackknife(problem, pose);
@@ -274,65 +273,10 @@ impl ContrastRegistration {
 mod tests {
     use nalgebra::{Rotation3, Vector3};
 
+    use super::super::test_scene::{SIDE, TEXTURE_BLUR, texture, views};
     use super::*;
-    use crate::light::basis;
     use crate::numeric::noise;
-    use crate::view::{ColourImage, ColourSamples, ColourView, DepthMap, DepthSamples, DepthView};
-
-    const SIDE: usize = 64;
-    /// Blur of the following texture, pixels: as soft as shading, and sharper than the local means.
-    const TEXTURE_BLUR: usize = 2;
-
-    /// A dome with bumps, and its gradient, pixels.
-    fn relief(x: f64, y: f64) -> (f64, [f64; 2]) {
-        let (k, bump) = (0.35, 1.6);
-        let [sx, cx] = [(k * x).sin(), (k * x).cos()];
-        let [sy, cy] = [(0.8 * k * y).sin(), (0.8 * k * y).cos()];
-        let height = -0.012 * (x * x + y * y) + bump * sx * cy;
-        (-height, [0.024 * x - bump * k * cx * cy, 0.024 * y + bump * 0.8 * k * sx * sy])
-    }
-
-    fn is_object(x: f64, y: f64) -> bool {
-        x * x + y * y < 27.0 * 27.0
-    }
-
-    /// Noise of this amplitude, log units, blurred three times by a box.
-    fn texture(seed: u64, amplitude: f64) -> Vec<f64> {
-        let mut dice = noise::white_noise(seed);
-        let mut field: Vec<f64> = (0..SIDE * SIDE).map(|_| dice()).collect();
-        for _ in 0..3 {
-            for stride in [1, SIDE] {
-                let source = field.clone();
-                for (index, value) in field.iter_mut().enumerate() {
-                    let near = |k: usize| source[(index + SIDE * SIDE + k * stride - stride) % (SIDE * SIDE)];
-                    *value = (0..=TEXTURE_BLUR).map(near).sum::<f64>() / (TEXTURE_BLUR + 1) as f64;
-                }
-            }
-        }
-        let spread = (field.iter().map(|value| value * value).sum::<f64>() / field.len() as f64).sqrt();
-        field.iter().map(|value| amplitude * value / spread).collect()
-    }
-
-    /// Image and depth of one view; the pose between them is the identity.
-    fn views(texture: &[f64]) -> (ColourView, DepthView) {
-        let (mut data, mut depth, mut mask) = (Vec::new(), Vec::new(), Vec::new());
-        for index in 0..SIDE * SIDE {
-            let [x, y] = [index % SIDE, index / SIDE].map(|place| place as f64 - (SIDE - 1) as f64 / 2.0);
-            let (z, [p, q]) = relief(x, y);
-            let length = (1.0 + p * p + q * q).sqrt();
-            let shades = basis([p / length, q / length, -1.0 / length]);
-            let light = |tint: f64| -1.0 + 0.5 * shades[1] - 0.4 * tint * shades[3] - 0.3 * shades[2] / tint;
-            data.extend([0.8, 1.0, 1.3].map(|tint| (light(tint) + texture[index]).exp() as f32));
-            depth.push(if is_object(x, y) { z as f32 + 50.0 } else { 0.0 });
-            mask.push(u8::from(is_object(x, y)));
-        }
-        let samples = ColourSamples::RgbLinear(data);
-        let mask = Some(mask);
-        let image = ColourImage { width: SIDE, height: SIDE, samples, transfer: None, mask, camera: None };
-        let samples = DepthSamples::Float(depth);
-        let map = DepthMap { width: SIDE, height: SIDE, samples, unit: None, mask: None, camera: None, normals: None };
-        (ColourView::new(image).unwrap(), DepthView::new(&map, true).unwrap())
-    }
+    use crate::view::{ColourView, DepthView};
 
     /// Error in degrees at the end of a registration from 3 degrees off.
     fn off((image, depth): &(ColourView, DepthView), instrument_rounds: usize) -> f64 {
@@ -354,7 +298,7 @@ mod tests {
 
     #[test]
     fn smooth_albedo_biases_less_by_instruments() {
-        let scenes: Vec<_> = (1..=6).map(|seed| views(&texture(seed, 0.06))).collect();
+        let scenes: Vec<_> = (1..=6).map(|seed| views(&texture(seed, 0.06, TEXTURE_BLUR))).collect();
         let mean = |rounds| scenes.iter().map(|scene| off(scene, rounds)).sum::<f64>() / scenes.len() as f64;
         let (descent, instruments) = (mean(0), mean(20));
         assert!(instruments < 0.8 * descent, "{instruments} instead of {descent}");
@@ -365,12 +309,12 @@ mod tests {
         let normal_error = vec![0.0; depth.size.len()];
         let problem = ContrastProblem { object, ..ContrastProblem::of_views(image, depth, &normal_error) };
         let mut registration = ContrastRegistration::new(&problem, 1, 0.0);
-        registration.uncertainty(&problem, &Similarity::identity()).unwrap().rotation_degrees
+        registration.uncertainty(&problem, &Similarity::identity()).unwrap().uncertainty.rotation_degrees
     }
 
     #[test]
     fn a_silhouette_that_does_not_fit_widens_sigmas() {
-        let views = views(&texture(9, 0.03));
+        let views = views(&texture(9, 0.03, TEXTURE_BLUR));
         let mask = &views.0.mask;
         // Four pixels are cut off the mask on two sides, but not off the image. Their effects cancel.
         let cut = |index: usize| (index % SIDE).abs_diff(SIDE / 2) > 22;
@@ -386,8 +330,8 @@ mod tests {
     fn a_cloud_that_shrinks_onto_bare_albedo_ranks_behind_one_that_shading_explains() {
         let (centre, bare) = ((SIDE - 1) as f64 / 2.0, 13.0);
         // Shading and soft albedo, except for a label in the middle with hardly any contrast.
-        let (mut image, depth) = views(&texture(7, 0.12));
-        let grain = texture(8, 0.004);
+        let (mut image, depth) = views(&texture(7, 0.12, TEXTURE_BLUR));
+        let grain = texture(8, 0.004, TEXTURE_BLUR);
         for (index, grain) in grain.iter().enumerate() {
             let [x, y] = [index % SIDE, index / SIDE].map(|place| place as f64 - centre);
             if x * x + y * y < bare * bare {

@@ -11,7 +11,7 @@ use crate::pose::residuals::NORMAL_ERROR;
 use crate::view::{Size, extent};
 
 /// A grid pixel with a point and a normal.
-pub(super) struct Sample {
+pub(in crate::pose) struct Sample {
     /// Index of the pixel on the grid.
     pub cell: usize,
     pub point: Vector3<f64>,
@@ -19,7 +19,7 @@ pub(super) struct Sample {
 }
 
 /// Points on a grid.
-pub(super) struct Samples {
+pub(in crate::pose) struct Samples {
     pub grid: Size,
     /// Number of depth pixels from one sample to the next.
     pub stride: usize,

@@ -8,6 +8,7 @@
 
 use super::problem::{ContrastProblem, ContrastReport};
 use super::registration::{ContrastEffort, ContrastRegistration};
+use super::uncertainty::PoseCovariance;
 use crate::pose::similarity::Similarity;
 
 /// A stage: number of samples, limits of a registration, number of ends that go on, and their least distance in
@@ -150,8 +151,9 @@ impl ContrastSearch {
     pub fn outcome(&mut self, problem: &ContrastProblem<'_>) -> Option<ContrastOutcome> {
         let &(_, pose) = self.ends.first()?;
         let objective = self.registration.evaluate(problem, &pose, RANKING_NOISE)?;
-        let uncertainty = self.registration.uncertainty(problem, &pose)?;
-        Some(ContrastOutcome { best: ContrastReport { pose, objective, uncertainty }, rivals: self.rivals.clone() })
+        let PoseCovariance { uncertainty, covariance, frame } = self.registration.uncertainty(problem, &pose)?;
+        let best = ContrastReport { pose, objective, uncertainty, covariance, frame };
+        Some(ContrastOutcome { best, rivals: self.rivals.clone() })
     }
 }
 

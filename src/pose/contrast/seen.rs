@@ -12,7 +12,7 @@ use crate::view::Size;
 const JUMP: f64 = 4.0;
 
 /// Visible samples and occluding contour under one pose; owns its memory.
-pub(super) struct Seen {
+pub(in crate::pose) struct Seen {
     /// Nearest depth in each cell of the image; cells are as wide as the spacing of samples.
     buffer: Vec<f64>,
     size: Size,

@@ -62,15 +62,21 @@ fn covariance(linearised: &Linearised<'_>, held: &[bool; UNKNOWNS]) -> PoseMatri
     scores.covariance(inverse(&matrix).as_ref(), 1.0, held)
 }
 
-/// One sigma of each number of the pose, from the tiles and the given covariance of the sectors.
-pub(super) fn described(linearised: &Linearised<'_>, by_sectors: PoseMatrix) -> Uncertainty {
+/// The uncertainty of a pose.
+pub struct PoseCovariance {
+    /// One sigma of each number of the pose.
+    pub uncertainty: Uncertainty,
+    /// Covariance of the unknowns in this frame, zero for held ones.
+    pub covariance: PoseMatrix,
+    pub frame: Frame,
+}
+
+/// The uncertainty from the tiles and the given covariance of the sectors.
+pub(super) fn described(linearised: &Linearised<'_>, by_sectors: PoseMatrix) -> PoseCovariance {
     let held = linearised.problem.held();
-    let covariance = &(covariance(linearised, &held) + by_sectors);
-    describe(
-        covariance,
-        linearised.frame,
-        &linearised.state.pose,
-        [held[TRANSLATION_Z], held[SCALE]],
-        weakest_of(covariance),
-    )
+    let covariance = covariance(linearised, &held) + by_sectors;
+    let frame = *linearised.frame;
+    let fixed = [held[TRANSLATION_Z], held[SCALE]];
+    let uncertainty = describe(&covariance, &frame, &linearised.state.pose, fixed, weakest_of(&covariance));
+    PoseCovariance { uncertainty, covariance, frame }
 }
