@@ -50,7 +50,7 @@ impl Field {
                 (colours[cell], usable[cell]) = (mean, true);
             }
         }
-        let most = size.len();
+        let most = surface.hits.capacity();
         Self {
             colours,
             usable,

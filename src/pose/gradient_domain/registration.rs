@@ -93,7 +93,9 @@ impl GradientRegistration {
         let thinned = |count: usize| (count as f64 / MOST_SAMPLES).sqrt().round().max(1.0) as usize;
         let samples = Samples::new(problem, thinned(problem.depth.valid()));
         let pixels = problem.object.iter().filter(|inside| **inside).count();
-        let surface = Surface::new(problem.image.size, thinned(pixels), &samples);
+        // A raster pixel shows the surface only if all its pixels are on the object.
+        let step = thinned(pixels);
+        let surface = Surface::new(problem.image.size, step, &samples, pixels / (step * step));
         let field = Field::new(&problem.image.lifted(LIFT), surface);
         Self {
             seen: Seen::new(problem.image.size, &samples, samples.stride as f64),

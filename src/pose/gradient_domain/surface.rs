@@ -66,7 +66,8 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    pub fn new(image: Size, step: usize, samples: &Samples) -> Self {
+    /// Of this many raster pixels on the object, at most.
+    pub fn new(image: Size, step: usize, samples: &Samples, most: usize) -> Self {
         let size = Size { width: image.width.div_ceil(step), height: image.height.div_ceil(step) };
         let count = samples.list.len();
         Self {
@@ -76,7 +77,7 @@ impl Surface {
             placed: vec![[0.0; 3]; count],
             facing: vec![0.0; count],
             buffer: vec![EMPTY; size.len()],
-            hits: Vec::with_capacity(size.len()),
+            hits: Vec::with_capacity(most),
             place: vec![NONE; size.len()],
         }
     }
