@@ -5,7 +5,7 @@
 import { BimodalError } from "../errors.js";
 import { cameraOf } from "./formats/cameras.js";
 import { isIntrinsics, isLens, wordsOf } from "./formats/names.js";
-import { lensArray } from "./formats/npy-matrix.js";
+import { smallArray } from "./formats/npy-matrix.js";
 import { type Numbers, numberOf } from "./formats/numbers.js";
 import { folderOf, isLensFile, stem } from "./names.js";
 import type { TextOfFrame } from "./perframe.js";
@@ -31,10 +31,16 @@ function written(text: string): Numbers | undefined {
   return values.every((value) => value !== undefined) ? values : undefined;
 }
 
+/** The numbers of a NumPy array of one row or column. */
+function listOf(bytes: Uint8Array): number[] | undefined {
+  const array = smallArray(bytes);
+  return array && (array.axes.length < 2 || array.axes.includes(1)) ? array.values : undefined;
+}
+
 /** The coefficients in a file with the name of a lens, if it has nothing else. */
 export function lensOf({ name, bytes }: NamedFile): LensFile | undefined {
   if (bytes.length > LONGEST) return undefined;
-  const values = lensArray(bytes) ?? written(new TextDecoder().decode(bytes));
+  const values = listOf(bytes) ?? written(new TextDecoder().decode(bytes));
   return values !== undefined && COUNTS.includes(values.length) ? { file: name, values } : undefined;
 }
 

@@ -20,30 +20,23 @@ function isMatrix(rows: readonly (readonly number[])[]): boolean {
 const inRows = (values: readonly number[], [height = 1, width = 1]: readonly number[]): number[][] =>
   Array.from({ length: height }, (_, at) => values.slice(at * width, (at + 1) * width));
 
-/** The rows as text, as numpy.savetxt writes them; undefined where the array is not such a matrix. */
-export function matrixText(bytes: Uint8Array): string | undefined {
+/** The numbers of a small array with the lengths of its axes; undefined for other files. */
+export function smallArray(bytes: Uint8Array): { axes: number[]; values: number[] } | undefined {
   if (bytes.length > MOST_BYTES || !isNpy(bytes)) return undefined;
   try {
     const { axes, values } = readSmall(bytes, MOST_NUMBERS);
-    if (values === undefined) return undefined;
-    const rows = inRows(values, axes);
-    return isMatrix(rows) ? rows.map((row) => row.join(" ")).join("\n") : undefined;
+    return values && { axes, values };
   } catch (error) {
     if (error instanceof BimodalError) return undefined;
     throw error;
   }
 }
 
-/** The numbers of an array of one row or column, such as the coefficients of a lens; undefined for other files. */
-export function lensArray(bytes: Uint8Array): number[] | undefined {
-  if (bytes.length > MOST_BYTES || !isNpy(bytes)) return undefined;
-  try {
-    const { axes, values } = readSmall(bytes, MOST_NUMBERS);
-    return axes.length < 2 || axes.includes(1) ? values : undefined;
-  } catch (error) {
-    if (error instanceof BimodalError) return undefined;
-    throw error;
-  }
+/** The rows as text, as numpy.savetxt writes them; undefined where the array is not such a matrix. */
+export function matrixText(bytes: Uint8Array): string | undefined {
+  const array = smallArray(bytes);
+  const rows = array && inRows(array.values, array.axes);
+  return rows && isMatrix(rows) ? rows.map((row) => row.join(" ")).join("\n") : undefined;
 }
 
 /**
