@@ -85,7 +85,7 @@ async function finish({ file, target, name = MODULE }) {
   ]);
   // Level "z" saves the last kilobyte; speed comes from LLVM. By default, Binaryen inlines functions with one caller, whatever their size.
   // Engines switch to a function's optimised code only at its next call, so one long loop would run slowly to its end.
-  const apart = ["--one-caller-inline-max-function-size", "50"];
+  const apart = ["--one-caller-inline-max-function-size", "30"];
   // Only the stack uses the first kilobyte, and only if it overflows, so offsets can fold into addresses. A second pass shortens what the
   // first one leaves.
   const smaller = ["-Oz", "-Oz", "--low-memory-unused"];

@@ -42,7 +42,7 @@ impl Planes {
         let mask = Silhouette::new(self.size, mask);
         for (index, pixel) in self.pixels.iter_mut().enumerate() {
             let (column, row) = self.size.position(index);
-            if mask.beyond_frame_at([column as f64, row as f64]) > margin {
+            if mask.at([column as f64, row as f64]).0 > margin {
                 *pixel = [f32::NAN; 3];
             }
         }
