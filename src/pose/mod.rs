@@ -38,6 +38,7 @@ mod jackknife;
 mod neighbours;
 mod photometric;
 mod prior;
+mod products;
 mod ransac;
 mod residuals;
 mod sandwich;

@@ -4,6 +4,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use crate::pose::increment::{PoseMatrix, PoseVector, UNKNOWNS, damped_step};
+use crate::pose::products::Products;
 
 /// Number of harmonics of orders one and two; the constant one has no contrast.
 pub(super) const SHADES: usize = 8;
@@ -21,37 +22,9 @@ const RIDGE: f64 = 1e-4;
 /// Length of the vector of one channel at a point: derivatives by the pose, harmonics, residual.
 const NUMBERS: usize = UNKNOWNS + SHADES + 1;
 const RESIDUAL: usize = NUMBERS - 1;
-/// Number of points whose products are summed in single precision before they are added to the sums.
-const BATCH: usize = 64;
-
-/// Sums over points of the products of these numbers, for one channel.
-struct Products {
-    batch: [[f32; NUMBERS]; NUMBERS],
-    sums: [[f64; NUMBERS]; NUMBERS],
-}
-
-impl Products {
-    const ZERO: Self = Self { batch: [[0.0; NUMBERS]; NUMBERS], sums: [[0.0; NUMBERS]; NUMBERS] };
-
-    #[inline(always)]
-    fn add(&mut self, numbers: &[f32; NUMBERS], weight: f32, from: usize) {
-        for row in from..NUMBERS {
-            let share = weight * numbers[row];
-            self.batch[row].iter_mut().zip(numbers).for_each(|(sum, number)| *sum += share * number);
-        }
-    }
-
-    fn flush(&mut self) {
-        for (sums, batch) in self.sums.iter_mut().zip(&mut self.batch) {
-            sums.iter_mut().zip(batch).for_each(|(sum, share)| *sum += f64::from(std::mem::take(share)));
-        }
-    }
-}
-
 /// Sums over points.
 pub(super) struct Equations {
-    channels: [Products; 3],
-    entered: usize,
+    channels: [Products<NUMBERS>; 3],
     /// Matrix and gradient of the residuals that do not depend on the light.
     pose: PoseMatrix,
     gradient: PoseVector,
@@ -59,7 +32,7 @@ pub(super) struct Equations {
 
 impl Equations {
     pub fn new() -> Self {
-        Self { channels: [Products::ZERO; 3], entered: 0, pose: PoseMatrix::zeros(), gradient: PoseVector::zeros() }
+        Self { channels: [Products::ZERO; 3], pose: PoseMatrix::zeros(), gradient: PoseVector::zeros() }
     }
 
     /// Adds a point: its harmonics, and for each channel its residual and derivative by the pose.
@@ -70,7 +43,6 @@ impl Equations {
             numbers[UNKNOWNS..RESIDUAL].copy_from_slice(shades);
             products.add(&numbers, weight as f32, 0);
         }
-        self.count();
     }
 
     /// Adds a point to the equations of the light without the pose.
@@ -80,14 +52,6 @@ impl Equations {
             numbers[UNKNOWNS..RESIDUAL].copy_from_slice(shades);
             numbers[RESIDUAL] = residual as f32;
             products.add(&numbers, weight as f32, UNKNOWNS);
-        }
-        self.count();
-    }
-
-    fn count(&mut self) {
-        self.entered += 1;
-        if self.entered.is_multiple_of(BATCH) {
-            self.channels.iter_mut().for_each(Products::flush);
         }
     }
 

@@ -4,6 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::harmonics::SHADES;
 use crate::pose::increment::{PoseMatrix, PoseVector, UNKNOWNS};
+use crate::pose::products::Products;
 
 /// Light of the three rotated channels over the harmonics of the depth view's own normals.
 pub(super) type Lights = [SVector<f64, SHADES>; 3];
@@ -12,44 +13,11 @@ type Cross = SMatrix<f64, UNKNOWNS, SHADES>;
 
 pub(super) const NUMBERS: usize = UNKNOWNS + SHADES + 1;
 const RESIDUAL: usize = NUMBERS - 1;
-/// Number of pairs whose products are summed in single precision before they are added to the sums.
-const BATCH: u32 = 64;
-
-/// Sums of the products of N numbers, for one channel.
-#[derive(Clone)]
-pub(super) struct Products<const N: usize> {
-    batch: [[f32; N]; N],
-    sums: [[f64; N]; N],
-    entered: u32,
-}
-
 /// The numbers of a pair: derivatives by the pose, harmonics, residual; or without the pose.
 pub(super) type PoseProducts = Products<NUMBERS>;
 pub(super) type LightProducts = Products<{ SHADES + 1 }>;
 
 impl<const N: usize> Products<N> {
-    pub const ZERO: Self = Self { batch: [[0.0; N]; N], sums: [[0.0; N]; N], entered: 0 };
-
-    /// Adds the products of a pair.
-    #[inline(always)]
-    pub fn add(&mut self, numbers: &[f32; N], weight: f32) {
-        for row in 0..N {
-            let share = weight * numbers[row];
-            self.batch[row].iter_mut().zip(numbers).for_each(|(sum, number)| *sum += share * number);
-        }
-        self.entered += 1;
-        if self.entered == BATCH {
-            self.flush();
-        }
-    }
-
-    pub fn flush(&mut self) {
-        self.entered = 0;
-        for (sums, batch) in self.sums.iter_mut().zip(&mut self.batch) {
-            sums.iter_mut().zip(batch).for_each(|(sum, share)| *sum += f64::from(std::mem::take(share)));
-        }
-    }
-
     /// The inverse of the light's matrix with the information of its prior, and the products with the residual.
     pub fn light(&self, prior: &SVector<f64, SHADES>) -> Option<(Gram, SVector<f64, SHADES>)> {
         let first = N - 1 - SHADES;

@@ -104,7 +104,7 @@ impl Model {
                 squares[c] += f64::from(fitted.weight * fitted.residual[c] * fitted.residual[c] * share);
                 weights[c] += f64::from(pair.weight * share);
                 numbers[SHADES] = b[c] - a[c];
-                products[c].add(&numbers, fitted.weight(c));
+                products[c].add(&numbers, fitted.weight(c), 0);
             }
         }
         for (c, products) in products.iter_mut().enumerate() {

@@ -261,7 +261,7 @@ impl GradientRegistration {
             for c in 0..CHANNELS {
                 (0..UNKNOWNS).for_each(|k| numbers[k] = b[c][k] - a[c][k]);
                 numbers[NUMBERS - 1] = fitted.residual[c];
-                products[c].add(&numbers, fitted.weight(c));
+                products[c].add(&numbers, fitted.weight(c), 0);
             }
         }
         let (mut matrix, mut gradient) = (PoseMatrix::zeros(), PoseVector::zeros());
