@@ -3,8 +3,10 @@ import { promises } from "node:fs";
 import { syncBuiltinESMExports } from "node:module";
 import { basename } from "node:path";
 import { parentPort, workerData } from "node:worker_threads";
+import { chance } from "../../protocols/numbers.mjs";
+import { paintSoftly } from "../../protocols/soft.mjs";
 
-const { inNode, knowsSimd, request } = workerData;
+const { inNode, knowsSimd, request, paints } = workerData;
 
 const read = promises.readFile;
 const opened = [];
@@ -25,7 +27,8 @@ if (!knowsSimd) WebAssembly.validate = () => false;
 const { default: init, Estimator, sample } = await import("../../pkg/index.js");
 await init();
 const { image, depth, pose: truth } = sample(request);
+if (paints) paintSoftly(image.data, image.width, image.mask, chance(paints));
 const estimator = new Estimator(image, depth);
-const { status, pose } = await estimator.run();
+const { status, pose, uncertainty } = await estimator.run();
 estimator.free();
-parentPort.postMessage({ opened: opened.filter((name) => name.endsWith(".wasm")), status, pose, truth });
+parentPort.postMessage({ opened: opened.filter((name) => name.endsWith(".wasm")), status, pose, uncertainty, truth });
