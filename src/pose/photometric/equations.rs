@@ -13,7 +13,7 @@ use super::residual::{Derivative, LinearisedPoints};
 use super::state::Step;
 use crate::light::{COEFFICIENTS, CoefficientMatrix, Coefficients, HARMONICS, Light, LightPrior, falling_by_turns};
 use crate::numeric::{Doubles, Real};
-use crate::pose::increment::{PoseMatrix, PoseVector, UNKNOWNS, fix_unknowns, inverse};
+use crate::pose::increment::{PoseMatrix, PoseVector, UNKNOWNS, fix_unknowns, inverse, product};
 use crate::pose::sums::Sums;
 
 /// One row for each unknown of the pose, one column for each of the light.
@@ -236,6 +236,12 @@ impl ReducedSystem {
     pub fn add(&mut self, sums: &Sums) {
         self.matrix += sums.symmetric();
         self.score += sums.gradient;
+    }
+
+    /// Adds sums that do not depend on the light, each unknown weighed against the others by `weight`.
+    pub fn add_weighted(&mut self, weight: &PoseMatrix, sums: &Sums) {
+        self.matrix += product(weight, &sums.symmetric());
+        self.score += weight * sums.gradient;
     }
 
     /// The step of pose and light, with the pose damped by a share of its diagonal; `held` unknowns do not move. `None`

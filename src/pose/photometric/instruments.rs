@@ -31,6 +31,7 @@ impl Photometric {
             0 if !self.thinned => self.choose_points(problem, Sampling { level: 0, most: self.options.most_points })?,
             _ => self.points.frame(problem, &self.state.pose),
         };
+        self.weigh_near(problem, &frame)?;
         if self.thinned {
             let reduced = self.reduce_by_instruments(problem, &frame)?;
             let variances = self.covariance(problem, &frame, &reduced).diagonal();
@@ -51,10 +52,7 @@ impl Photometric {
         last: f64,
     ) -> Result<Phase> {
         self.iterations += 1;
-        let mut reduced = self.reduce_by_instruments(problem, frame)?;
-        if let Some(sums) = self.near_terms(problem, 0, frame, &self.state.pose) {
-            reduced.add(&sums);
-        }
+        let reduced = self.reduce_near(problem, frame)?;
         let mut settled = true;
         if let Some(step) = reduced.step(0.0, &problem.held()).filter(|step| round == 0 || step.pose.norm() <= last) {
             self.state = self.state.stepped(frame, &step, problem.light.is_some());

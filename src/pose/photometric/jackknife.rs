@@ -50,10 +50,7 @@ impl Photometric {
     fn refit(&mut self, problem: &PhotometricProblem<'_>, frame: &Frame) -> PoseVector {
         let mut moved = PoseVector::zeros();
         for _ in 0..STEPS {
-            let Ok(mut reduced) = self.reduce_by_instruments(problem, frame) else { break };
-            if let Some(sums) = self.near_terms(problem, 0, frame, &self.state.pose) {
-                reduced.add(&sums);
-            }
+            let Ok(reduced) = self.reduce_near(problem, frame) else { break };
             let Some(step) = reduced.step(0.0, &problem.held()) else { break };
             self.state = self.state.stepped(frame, &step, problem.light.is_some());
             moved += step.pose;

@@ -64,7 +64,8 @@ impl MaskAndPrior {
         }
     }
 
-    /// The terms at a pose, with derivatives by the unknowns of `frame`.
+    /// Both terms at a pose, with derivatives by the unknowns of `frame`. The prior counts as much as [`CORRELATED`]
+    /// residuals.
     pub fn sums(
         &self,
         problem: &PhotometricProblem<'_>,
@@ -73,26 +74,35 @@ impl MaskAndPrior {
         frame: &Frame,
         weights: MaskAndPriorWeights,
     ) -> Sums {
-        let mut sums = Sums::new();
-        self.add_mask(problem, pose, frame, weights, &mut sums);
+        let mut sums = self.mask(problem, pose, frame, weights);
         let MaskAndPriorWeights { noise, level, .. } = weights;
         let along = if level > 0 { DISTANCE_FIRST * prior.along } else { prior.along };
-        PosePrior { along, ..*prior }.for_each(self.middle, pose, frame, |row, residual| {
-            sums.add(row, residual, CORRELATED * noise * noise, f64::INFINITY);
-        });
+        let prior = PosePrior { along, ..*prior };
+        self.add_prior(&prior, pose, frame, CORRELATED * noise * noise, &mut sums);
         sums
     }
 
-    /// Adds the points off the mask.
-    fn add_mask(
+    /// The prior alone, in squares of its sigmas.
+    pub fn prior(&self, prior: &PosePrior, pose: &Similarity, frame: &Frame) -> Sums {
+        let mut sums = Sums::new();
+        self.add_prior(prior, pose, frame, 1.0, &mut sums);
+        sums
+    }
+
+    fn add_prior(&self, prior: &PosePrior, pose: &Similarity, frame: &Frame, weight: f64, sums: &mut Sums) {
+        prior.for_each(self.middle, pose, frame, |row, residual| sums.add(row, residual, weight, f64::INFINITY));
+    }
+
+    /// The points off the mask.
+    pub fn mask(
         &self,
         problem: &PhotometricProblem<'_>,
         pose: &Similarity,
         frame: &Frame,
         weights: MaskAndPriorWeights,
-        sums: &mut Sums,
-    ) {
-        let Some(silhouette) = &self.silhouette else { return };
+    ) -> Sums {
+        let mut sums = Sums::new();
+        let Some(silhouette) = &self.silhouette else { return sums };
         let MaskAndPriorWeights { points, robust_scale, level, .. } = weights;
         let scale = SCALES[level];
         let share = OFF_WEIGHT * points / self.points.len().max(1) as f64 * (robust_scale / scale).powi(2);
@@ -106,6 +116,7 @@ impl MaskAndPrior {
                 sums.add(&(right * by_column + down * by_row), distance - SLACK, share, scale);
             }
         }
+        sums
     }
 }
 

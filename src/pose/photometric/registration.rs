@@ -115,6 +115,7 @@ impl Photometric {
     /// [`Degenerate`](crate::ErrorKind::Degenerate) if the visible points do not determine the pose.
     pub fn report(&mut self, problem: &PhotometricProblem<'_>) -> Result<PhotometricReport> {
         let frame = self.evaluate_end(problem, self.options.most_points)?;
+        self.weigh_near(problem, &frame)?;
         let by_sectors = if self.options.jackknife { self.jackknife(problem, &frame)? } else { PoseMatrix::zeros() };
         let reduced = self.reduce_by_instruments(problem, &frame)?;
         let held = problem.held();

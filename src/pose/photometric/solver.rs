@@ -12,7 +12,7 @@ use super::residual::{ColourModel, Samples};
 use super::state::State;
 use super::weighting::{Weighting, final_robust_scale, prior_weight};
 use crate::error::{Error, ErrorKind, Result};
-use crate::pose::increment::{Frame, PoseMatrix, PoseVector};
+use crate::pose::increment::{Frame, PoseMatrix, PoseVector, product};
 use crate::pose::residuals::LEAST_NOISE;
 use crate::pose::similarity::Similarity;
 use crate::pose::spline_image::SplineImage;
@@ -45,6 +45,8 @@ pub struct Photometric {
     /// The image whose gradients are the instrumental variables.
     instruments: SplineImage,
     pub(super) points: VisiblePoints,
+    /// H C, which weighs the prior about an initial pose against the equations of the other terms (see `near`).
+    prior_weight: PoseMatrix,
     /// The terms about an initial pose, once a problem has one.
     near: Option<Box<HeldNear>>,
     pub(super) tiles: Tiles,
@@ -85,6 +87,7 @@ impl Photometric {
             samples: Vec::new(),
             magnitudes: Vec::with_capacity(points.capacity()),
             points,
+            prior_weight: PoseMatrix::zeros(),
             near: None,
             tiles: Tiles::new(problem.depth_size),
             state,
@@ -199,9 +202,35 @@ impl Photometric {
         pose: &Similarity,
     ) -> Option<Sums> {
         let (prior, near) = problem.near.as_ref().zip(self.near.as_ref())?;
+        Some(near.terms.sums(problem, prior, pose, frame, self.near_weights(level)))
+    }
+
+    fn near_weights(&self, level: usize) -> MaskAndPriorWeights {
         let (points, robust_scale) = (self.points.weight(), self.weighting.robust_scale);
-        let weights = MaskAndPriorWeights { points, robust_scale, noise: self.noise.residuals, level };
-        Some(near.terms.sums(problem, prior, pose, frame, weights))
+        MaskAndPriorWeights { points, robust_scale, noise: self.noise.residuals, level }
+    }
+
+    /// Weighs the prior about an initial pose for the present points, if there is one: by the matrix H of the other
+    /// terms and their covariance C.
+    pub(super) fn weigh_near(&mut self, problem: &PhotometricProblem<'_>, frame: &Frame) -> Result<()> {
+        if problem.near.is_none() {
+            return Ok(());
+        }
+        let reduced = self.reduce_by_instruments(problem, frame)?;
+        let covariance = self.covariance(problem, frame, &reduced);
+        self.prior_weight = product(&reduced.matrix, &covariance);
+        Ok(())
+    }
+
+    /// The equations by instrumental variables, with the terms about an initial pose if there is one.
+    pub(super) fn reduce_near(&self, problem: &PhotometricProblem<'_>, frame: &Frame) -> Result<ReducedSystem> {
+        let mut reduced = self.reduce_by_instruments(problem, frame)?;
+        if let Some((prior, near)) = problem.near.as_ref().zip(self.near.as_ref()) {
+            let pose = &self.state.pose;
+            reduced.add(&near.terms.mask(problem, pose, frame, self.near_weights(0)));
+            reduced.add_weighted(&self.prior_weight, &near.terms.prior(prior, pose, frame));
+        }
+        Ok(reduced)
     }
 
     /// The objective of a state.
