@@ -249,6 +249,22 @@ mod long {
         }
     }
 
+    /// The prior about an initial pose must not count for more than its sigma says.
+    #[test]
+    fn initial_poses_six_degrees_apart_end_close_to_each_other() {
+        let sample = perspective("colourful");
+        let middle = middle(&sample);
+        let [one, other] = [-3.0_f64, 3.0].map(|degrees| {
+            let turn = Rotation3::new(Vector3::y() * degrees.to_radians()).into_inner();
+            let place = sample.pose.apply(middle);
+            let translation = turn * (sample.pose.translation - place) + place;
+            let start = Similarity { rotation: turn * sample.pose.rotation, translation, ..sample.pose };
+            run(&sample, Albedo::Dirt, told(&start))
+        });
+        let apart = one.pose.degrees_to(&other.pose);
+        assert!(apart < 2.0, "{apart} {one:?} {other:?}");
+    }
+
     #[test]
     fn fine_print_is_not_taken_for_noise_that_explains_the_colours() {
         // Letters of one pixel are uncorrelated between neighbours, as noise is; only their amplitude distinguishes them from a camera's noise.

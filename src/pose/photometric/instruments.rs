@@ -64,7 +64,7 @@ impl Photometric {
                 return Ok(Phase::InstrumentalStep { round, frame: *frame, steps: steps + 1, last: step.pose.norm() });
             }
         }
-        let objective = |state: &State| self.objective(problem, 0, frame, state);
+        let objective = |state: &State| self.evaluation(problem, 0, state).objective();
         let rise = objective(&self.state) / objective(&self.annealed);
         if rise.is_nan() || rise > 1.0 + LARGEST_RISE {
             self.state = self.annealed;
