@@ -238,7 +238,7 @@ impl ReducedSystem {
         self.score += sums.gradient;
     }
 
-    /// Adds sums that do not depend on the light, each unknown weighed against the others by `weight`.
+    /// Adds the product of a matrix and sums that do not depend on the light.
     pub fn add_weighted(&mut self, weight: &PoseMatrix, sums: &Sums) {
         self.matrix += product(weight, &sums.symmetric());
         self.score += weight * sums.gradient;

@@ -8,6 +8,11 @@
 //!
 //! An object that recedes shrinks into its mask and onto pixels that are easily explained. Its distance is therefore
 //! freed last. On blurred levels the Gaussian almost fixes it.
+//!
+//! Residuals under varying albedo correlate, so the Gaussian needs a weight relative to their sums. During annealing it
+//! is a constant, which keeps the pose from leaving with the first steps. At the end it follows from the image: with the
+//! matrix M of its equations and their covariance C from tiles, the Gaussian has the weight M C. Then the solution of
+//! M x + M C P (x - x0) = M x1 is the mean of the image's x1 and the initial x0 under C and P^-1.
 
 use nalgebra::Vector3;
 
@@ -64,8 +69,7 @@ impl MaskAndPrior {
         }
     }
 
-    /// Both terms at a pose, with derivatives by the unknowns of `frame`. The prior counts as much as [`CORRELATED`]
-    /// residuals.
+    /// Both terms at a pose during annealing, with derivatives by the unknowns of `frame`.
     pub fn sums(
         &self,
         problem: &PhotometricProblem<'_>,

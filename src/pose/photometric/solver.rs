@@ -45,7 +45,7 @@ pub struct Photometric {
     /// The image whose gradients are the instrumental variables.
     instruments: SplineImage,
     pub(super) points: VisiblePoints,
-    /// H C, which weighs the prior about an initial pose against the equations of the other terms (see `near`).
+    /// M C, the weight of the prior about an initial pose at the end (see `near`).
     prior_weight: PoseMatrix,
     /// The terms about an initial pose, once a problem has one.
     near: Option<Box<HeldNear>>,
@@ -210,8 +210,7 @@ impl Photometric {
         MaskAndPriorWeights { points, robust_scale, noise: self.noise.residuals, level }
     }
 
-    /// Weighs the prior about an initial pose for the present points, if there is one: by the matrix H of the other
-    /// terms and their covariance C.
+    /// Weighs the prior about an initial pose, if there is one, against the equations of the present points.
     pub(super) fn weigh_near(&mut self, problem: &PhotometricProblem<'_>, frame: &Frame) -> Result<()> {
         if problem.near.is_none() {
             return Ok(());
