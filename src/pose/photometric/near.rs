@@ -11,7 +11,7 @@
 //!
 //! Residuals under varying albedo correlate, so the Gaussian needs a weight relative to their sums. During annealing it
 //! is a constant, which keeps the pose from leaving with the first steps. At the end it follows from the image: with the
-//! matrix M of its equations and their covariance C from tiles, the Gaussian has the weight M C. Then the solution of
+//! matrix M of its equations and their covariance C, the Gaussian has the weight M C. Then the solution of
 //! M x + M C P (x - x0) = M x1 is the mean of the image's x1 and the initial x0 under C and P^-1.
 
 use nalgebra::Vector3;

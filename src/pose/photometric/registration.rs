@@ -44,6 +44,7 @@ impl Photometric {
         problem.check(self.sizes)?;
         start.validate("start")?;
         self.prepare_near(problem);
+        self.prior_weight = None;
         let level = options.first_level.min(coarsest(problem)).min(self.levels.len() - 1);
         // Starts from the image's own brightness, so that a change of exposure has no effect on the rest.
         let brightness = problem.image.log_mean();
@@ -105,7 +106,7 @@ impl Photometric {
     ) -> Result<PhotometricReport> {
         self.state = State { pose: found.pose, light: found.light, exposure: found.exposure };
         (self.phase, self.iterations) = (Phase::Done(found.termination), found.iterations);
-        self.options = PhotometricOptions::default();
+        (self.options, self.prior_weight) = (PhotometricOptions::default(), None);
         self.report(problem)
     }
 
@@ -115,7 +116,9 @@ impl Photometric {
     /// [`Degenerate`](crate::ErrorKind::Degenerate) if the visible points do not determine the pose.
     pub fn report(&mut self, problem: &PhotometricProblem<'_>) -> Result<PhotometricReport> {
         let frame = self.evaluate_end(problem, self.options.most_points)?;
-        self.weigh_near(problem, &frame)?;
+        if self.prior_weight.is_none() {
+            self.weigh_near(problem, &frame)?;
+        }
         let by_sectors = if self.options.jackknife { self.jackknife(problem, &frame)? } else { PoseMatrix::zeros() };
         let reduced = self.reduce_by_instruments(problem, &frame)?;
         let held = problem.held();

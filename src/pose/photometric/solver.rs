@@ -45,8 +45,8 @@ pub struct Photometric {
     /// The image whose gradients are the instrumental variables.
     instruments: SplineImage,
     pub(super) points: VisiblePoints,
-    /// M C, the weight of the prior about an initial pose at the end (see `near`).
-    prior_weight: PoseMatrix,
+    /// M C, the weight of the prior about an initial pose at the end of a registration (see `near`).
+    pub(super) prior_weight: Option<PoseMatrix>,
     /// The terms about an initial pose, once a problem has one.
     near: Option<Box<HeldNear>>,
     pub(super) tiles: Tiles,
@@ -87,7 +87,7 @@ impl Photometric {
             samples: Vec::new(),
             magnitudes: Vec::with_capacity(points.capacity()),
             points,
-            prior_weight: PoseMatrix::zeros(),
+            prior_weight: None,
             near: None,
             tiles: Tiles::new(problem.depth_size),
             state,
@@ -210,24 +210,30 @@ impl Photometric {
         MaskAndPriorWeights { points, robust_scale, noise: self.noise.residuals, level }
     }
 
-    /// Weighs the prior about an initial pose, if there is one, against the equations of the present points.
+    /// Weighs the prior about an initial pose, if there is one, against the equations of the present points. Their
+    /// covariance includes the jackknife where the report's does, but not for a sample, which is only compared.
     pub(super) fn weigh_near(&mut self, problem: &PhotometricProblem<'_>, frame: &Frame) -> Result<()> {
         if problem.near.is_none() {
             return Ok(());
         }
         let reduced = self.reduce_by_instruments(problem, frame)?;
-        let covariance = self.covariance(problem, frame, &reduced);
-        self.prior_weight = product(&reduced.matrix, &covariance);
+        let by_tiles = self.covariance(problem, frame, &reduced);
+        self.prior_weight = Some(product(&reduced.matrix, &by_tiles));
+        if self.options.jackknife && !self.points.are_sampled() {
+            let by_sectors = self.jackknife(problem, frame)?;
+            self.prior_weight = Some(product(&reduced.matrix, &(by_tiles + by_sectors)));
+        }
         Ok(())
     }
 
     /// The equations by instrumental variables, with the terms about an initial pose if there is one.
     pub(super) fn reduce_near(&self, problem: &PhotometricProblem<'_>, frame: &Frame) -> Result<ReducedSystem> {
         let mut reduced = self.reduce_by_instruments(problem, frame)?;
-        if let Some((prior, near)) = problem.near.as_ref().zip(self.near.as_ref()) {
+        let near = problem.near.as_ref().zip(self.near.as_ref()).zip(self.prior_weight.as_ref());
+        if let Some(((prior, near), weight)) = near {
             let pose = &self.state.pose;
             reduced.add(&near.terms.mask(problem, pose, frame, self.near_weights(0)));
-            reduced.add_weighted(&self.prior_weight, &near.terms.prior(prior, pose, frame));
+            reduced.add_weighted(weight, &near.terms.prior(prior, pose, frame));
         }
         Ok(reduced)
     }
