@@ -116,7 +116,7 @@ impl Photometric {
     /// [`Degenerate`](crate::ErrorKind::Degenerate) if the visible points do not determine the pose.
     pub fn report(&mut self, problem: &PhotometricProblem<'_>) -> Result<PhotometricReport> {
         let frame = self.evaluate_end(problem, self.options.most_points)?;
-        if self.prior_weight.is_none() {
+        if self.options.jackknife && self.prior_weight.is_none() {
             self.weigh_near(problem, &frame)?;
         }
         let by_sectors = if self.options.jackknife { self.jackknife(problem, &frame)? } else { PoseMatrix::zeros() };
