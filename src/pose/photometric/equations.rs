@@ -334,3 +334,32 @@ fn add_cross(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_prior_weighed_by_the_covariance_leads_to_the_mean_of_both() {
+        let positive = |shift: f64| {
+            let part = PoseMatrix::from_fn(|row, column| ((3 * row + 5 * column) as f64 + shift).sin());
+            part * part.transpose() + PoseMatrix::identity()
+        };
+        let [matrix, covariance, precision] = [0.0, 1.0, 2.0].map(positive);
+        let [of_image, initial] = [0.3, 0.7].map(|shift| PoseVector::from_fn(|k, _| (k as f64 + shift).cos()));
+        let mut system = ReducedSystem {
+            matrix,
+            score: -matrix * of_image,
+            score_by_light: PoseByLight::zeros(),
+            light_by_pose: SMatrix::zeros(),
+            light: Coefficients::zeros(),
+            light_is_known: true,
+        };
+        let prior = Sums { matrix: precision, gradient: -precision * initial, cost: 0.0 };
+        system.add_weighted(&product(&matrix, &covariance), &prior);
+        let step = system.step(0.0, &[false; UNKNOWNS]).expect("a step");
+        let by_image = inverse(&covariance).expect("positive");
+        let mean = inverse(&(by_image + precision)).expect("positive") * (by_image * of_image + precision * initial);
+        assert!((step.pose - mean).norm() < 1e-6, "{} {mean}", step.pose);
+    }
+}
