@@ -6,7 +6,7 @@ import { parentPort, workerData } from "node:worker_threads";
 import { chance } from "../../protocols/numbers.mjs";
 import { paintSoftly } from "../../protocols/soft.mjs";
 
-const { inNode, knowsSimd, request, paints } = workerData;
+const { inNode, knowsSimd, request, albedoSeed } = workerData;
 
 const read = promises.readFile;
 const opened = [];
@@ -27,7 +27,7 @@ if (!knowsSimd) WebAssembly.validate = () => false;
 const { default: init, Estimator, sample } = await import("../../pkg/index.js");
 await init();
 const { image, depth, pose: truth } = sample(request);
-if (paints) paintSoftly(image.data, image.width, image.mask, chance(paints));
+if (albedoSeed) paintSoftly(image.data, image.width, image.mask, chance(albedoSeed));
 const estimator = new Estimator(image, depth);
 const { status, pose, uncertainty } = await estimator.run();
 estimator.free();

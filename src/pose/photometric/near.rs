@@ -10,9 +10,9 @@
 //! freed last. On blurred levels the Gaussian almost fixes it.
 //!
 //! Residuals under varying albedo correlate, so the Gaussian needs a weight relative to their sums. During annealing it
-//! is a constant, which keeps the pose from leaving with the first steps. At the end it follows from the image: with the
-//! matrix M of its equations and their covariance C, the Gaussian has the weight M C. Then the solution of
-//! M x + M C P (x - x0) = M x1 is the mean of the image's x1 and the initial x0 under C and P^-1.
+//! is a constant. In the rounds with instruments it is M C, with the matrix M of the image's equations and their
+//! covariance C. The solution of M (x - x1) + M C P (x - x0) = 0 is then the mean of the image's x1 and the initial x0,
+//! weighted by the inverse C^-1 of the one covariance and the inverse P of the other.
 
 use nalgebra::Vector3;
 

@@ -44,7 +44,7 @@ impl Photometric {
         problem.check(self.sizes)?;
         start.validate("start")?;
         self.prepare_near(problem);
-        self.prior_weight = None;
+        self.pose_prior_weight = None;
         let level = options.first_level.min(coarsest(problem)).min(self.levels.len() - 1);
         // Starts from the image's own brightness, so that a change of exposure has no effect on the rest.
         let brightness = problem.image.log_mean();
@@ -106,7 +106,7 @@ impl Photometric {
     ) -> Result<PhotometricReport> {
         self.state = State { pose: found.pose, light: found.light, exposure: found.exposure };
         (self.phase, self.iterations) = (Phase::Done(found.termination), found.iterations);
-        (self.options, self.prior_weight) = (PhotometricOptions::default(), None);
+        (self.options, self.pose_prior_weight) = (PhotometricOptions::default(), None);
         self.report(problem)
     }
 
@@ -116,7 +116,7 @@ impl Photometric {
     /// [`Degenerate`](crate::ErrorKind::Degenerate) if the visible points do not determine the pose.
     pub fn report(&mut self, problem: &PhotometricProblem<'_>) -> Result<PhotometricReport> {
         let frame = self.evaluate_end(problem, self.options.most_points)?;
-        if self.options.jackknife && self.prior_weight.is_none() {
+        if self.options.jackknife && self.pose_prior_weight.is_none() {
             self.weigh_near(problem, &frame)?;
         }
         let by_sectors = if self.options.jackknife { self.jackknife(problem, &frame)? } else { PoseMatrix::zeros() };

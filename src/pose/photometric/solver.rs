@@ -46,7 +46,7 @@ pub struct Photometric {
     instruments: SplineImage,
     pub(super) points: VisiblePoints,
     /// M C, the weight of the prior about an initial pose at the end of a registration (see `near`).
-    pub(super) prior_weight: Option<PoseMatrix>,
+    pub(super) pose_prior_weight: Option<PoseMatrix>,
     /// The terms about an initial pose, once a problem has one.
     near: Option<Box<HeldNear>>,
     pub(super) tiles: Tiles,
@@ -87,7 +87,7 @@ impl Photometric {
             samples: Vec::new(),
             magnitudes: Vec::with_capacity(points.capacity()),
             points,
-            prior_weight: None,
+            pose_prior_weight: None,
             near: None,
             tiles: Tiles::new(problem.depth_size),
             state,
@@ -218,10 +218,10 @@ impl Photometric {
         }
         let reduced = self.reduce_by_instruments(problem, frame)?;
         let by_tiles = self.covariance(problem, frame, &reduced);
-        self.prior_weight = Some(product(&reduced.matrix, &by_tiles));
+        self.pose_prior_weight = Some(product(&reduced.matrix, &by_tiles));
         if self.options.jackknife && !self.points.are_sampled() {
             let by_sectors = self.jackknife(problem, frame)?;
-            self.prior_weight = Some(product(&reduced.matrix, &(by_tiles + by_sectors)));
+            self.pose_prior_weight = Some(product(&reduced.matrix, &(by_tiles + by_sectors)));
         }
         Ok(())
     }
@@ -229,7 +229,7 @@ impl Photometric {
     /// The equations by instrumental variables, with the terms about an initial pose if there is one.
     pub(super) fn reduce_near(&self, problem: &PhotometricProblem<'_>, frame: &Frame) -> Result<ReducedSystem> {
         let mut reduced = self.reduce_by_instruments(problem, frame)?;
-        let near = problem.near.as_ref().zip(self.near.as_ref()).zip(self.prior_weight.as_ref());
+        let near = problem.near.as_ref().zip(self.near.as_ref()).zip(self.pose_prior_weight.as_ref());
         if let Some(((prior, near), weight)) = near {
             let pose = &self.state.pose;
             reduced.add(&near.terms.mask(problem, pose, frame, self.near_weights(0)));

@@ -13,7 +13,7 @@ const LARGEST_WIDENING: f64 = 2.0;
 const PRIOR_DEGREES_OF_FREEDOM: f64 = 5.0;
 
 /// Number of residuals that count as one independent error if the albedo varies. It determines the weight of other
-/// terms relative to sums over residuals. Set on pairs of a statue (docs/lab/thresholds.md).
+/// terms relative to sums over residuals, that of the prior of a pose only during annealing. Set on pairs of a statue (docs/lab/thresholds.md).
 pub(super) const CORRELATED: f64 = 640.0;
 
 /// Weights of residuals and prior.
