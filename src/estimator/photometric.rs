@@ -264,11 +264,6 @@ impl PhotometricRegistration {
         Some(found).filter(|found| gauge::growth(pair, &found.pose, start) < COLLAPSE).map(Box::new)
     }
 
-    /// Standard deviation of log S over the points of the last registration.
-    pub fn spread(&self, pair: &ViewPair) -> f64 {
-        self.photometric.spread(&self.sharp.problem(pair, is_scale_held(pair), self.near))
-    }
-
     /// The photometric report of a pose that stays as it is, with the light fitted to it.
     pub fn judge(&mut self, pair: &ViewPair, pose: &Similarity) -> Option<Box<PhotometricReport>> {
         let options =

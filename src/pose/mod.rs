@@ -13,6 +13,7 @@
 //! | `transforms` | a pose as nalgebra's transformations and as a 4x4 matrix | | | |
 //! | `angles` | Eq. 16: the angles of a rotation | | alpha, beta, gamma | closed form |
 //! | `correspondence`, `visibility` | the 1-pixel rule: depth points and their pixels, with occlusion in both directions | | | z-buffers |
+//! | `curvature` | curvature of the depth map, which the albedo often follows | | | |
 //! | `prior` | a Gaussian about an initial pose | | | |
 //! | `descent` | step control of damped Gauss-Newton, for `photometric/` and `contrast/` | | | |
 //! | `increment` | a Gauss-Newton step of a similarity: seven unknowns | | | |
@@ -29,6 +30,7 @@
 mod angles;
 mod contrast;
 mod correspondence;
+mod curvature;
 mod descent;
 mod distance_transform;
 mod gradient_domain;

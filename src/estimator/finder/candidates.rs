@@ -43,20 +43,26 @@ const MORE_SHARE: f64 = 0.15;
 #[inline(never)]
 pub fn search(pair: &ViewPair, grid: ImageGrid, photometric: &PhotometricRegistration) -> Result<Search> {
     let region = TrustRegion::of(pair);
-    let problem = SearchProblem {
+    let problem = problem(pair, photometric);
+    let unit_scale = region.as_ref().map_or(problem.unit_scale, |region| region.initial.scale);
+    let mut search = Search::with_grid(&SearchProblem { unit_scale, ..problem }, grid)?;
+    if let Some(region) = region {
+        search.narrow(&region.initial, region.degrees);
+    }
+    Ok(search)
+}
+
+/// The problem of a search without an initial pose.
+pub fn problem<'a>(pair: &'a ViewPair, photometric: &'a PhotometricRegistration) -> SearchProblem<'a> {
+    SearchProblem {
         image: &pair.image,
         depth: &pair.depth,
         normals: photometric.normals(),
         light: pair.known_light(),
         scale: gauge::held_scale(pair),
-        unit_scale: region.as_ref().map_or_else(|| gauge::unit_scale(pair), |region| region.initial.scale),
+        unit_scale: gauge::unit_scale(pair),
         seed: pair.options.seed,
-    };
-    let mut search = Search::with_grid(&problem, grid)?;
-    if let Some(region) = region {
-        search.narrow(&region.initial, region.degrees);
     }
-    Ok(search)
 }
 
 /// The candidates of a search up to the choice; owns its memory.

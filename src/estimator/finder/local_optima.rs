@@ -137,7 +137,12 @@ impl LocalOptima {
 
     /// Enters the end of a registration; if two end at the same optimum, the better one stays.
     pub fn enter(&mut self, origin: Origin, registered: RegisteredCandidate) {
-        let gain = registered.visible.powf(THIRD) * (self.image.spread / registered.noise).ln();
+        self.enter_scored(origin, registered, 0.0);
+    }
+
+    /// Enters the end of a registration, to whose gain a score is added.
+    pub fn enter_scored(&mut self, origin: Origin, registered: RegisteredCandidate, score: f64) {
+        let gain = registered.visible.powf(THIRD) * (self.image.spread / registered.noise).ln() + score;
         if !gain.is_finite() {
             return;
         }

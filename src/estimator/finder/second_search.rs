@@ -1,19 +1,18 @@
 //! The second search, behind a pinhole, if nothing is known about the pose and the albedo varies
 //! (docs/method/registration.md).
 //!
-//! The first search expects both cameras at about the same distance. Here the distance follows from the mask, of which
-//! the depth map may cover only a part. Every end of its ascents is registered roughly; the best optima and the poses
-//! found before are registered with the terms of `pose/photometric/near.rs` and a wide prior.
-//!
-//! The optima are ranked by their gain over a constant colour of the points that they see. The spread of the whole
-//! image, in its place, would favour poses that see a part without contrast.
+//! The first search compares colours and expects both cameras at about the same distance. This one compares local
+//! contrast, and the distance follows from the mask, of which the depth map may cover only a part. Its candidates are
+//! registered roughly; the best ends and the poses found before are registered with the terms of
+//! `pose/photometric/near.rs` and a wide prior. Ends are ranked by the score of the search plus their gain: the gain alone
+//! favours poses that see a part without contrast, and the score alone knows no detail finer than its cells.
 
 use crate::estimator::pair::ViewPair;
 use crate::estimator::photometric::{Attempt, CANDIDATE_POINTS, FIRST_LEVEL_NEAR, PhotometricRegistration};
-use crate::pose::{ImageGrid, PhotometricReport, Search, Similarity};
+use crate::pose::{PhotometricReport, Search, Similarity};
 use crate::reason::Activity;
 
-use super::candidates::search;
+use super::candidates::problem;
 use super::initial_pose::aligned_prior;
 use super::local_optima::{Choice, LocalOptima, Origin, RegisteredCandidate};
 use super::silhouettes::ANYWHERE_DEGREES;
@@ -21,21 +20,25 @@ use super::silhouettes::ANYWHERE_DEGREES;
 /// Largest number of points of the rough registrations.
 const ROUGH_POINTS: usize = 400;
 /// Number of their optima that are registered again, with all terms.
-const MOST_REGISTERED: usize = 8;
+const MOST_REGISTERED: usize = 4;
 /// An end that sees fewer than this share of the points has receded until its points hide each other, and does not count.
 const LEAST_VISIBLE: f64 = 0.5;
-/// Largest noise of an end that may be the answer, as a share of the spread of the points that it sees. Set on pairs of a
-/// statue and on captures (docs/lab/thresholds.md).
-const LARGEST_NOISE_OF_SEEN: f64 = 0.4;
+/// Least score of an end that may be the answer, and how many times the score of silhouettes it has to be: neighbouring
+/// cells are not independent, so scores are too large by a factor. Set on pairs of a statue and on captures
+/// (docs/lab/thresholds.md).
+const LEAST_SCORE: f64 = 5.0;
+const LEAST_RATIO: f64 = 3.0;
 /// Shares of the work of the search and of the rough registrations.
-const SEARCH_SHARE: f64 = 0.1;
-const ROUGH_SHARE: f64 = 0.5;
+const SEARCH_SHARE: f64 = 0.4;
+const ROUGH_SHARE: f64 = 0.6;
 
 /// The second search in slices; owns its memory.
 pub struct SecondSearch {
     search: Search,
     /// Poses found before.
     known: Vec<Similarity>,
+    /// Score of the pose from silhouettes, zero without one.
+    score_of_silhouettes: f64,
     stage: Stage,
 }
 
@@ -53,10 +56,17 @@ enum Stage {
 
 impl SecondSearch {
     /// `None` if the views allow no search.
-    pub fn new(pair: &ViewPair, photometric: &PhotometricRegistration, known: Vec<Similarity>) -> Option<Self> {
-        let mut search = search(pair, ImageGrid::new(&pair.image).ok()?, photometric).ok()?;
-        search.seek_parts();
-        Some(Self { search, known, stage: Stage::Search })
+    pub fn new(
+        pair: &ViewPair,
+        photometric: &PhotometricRegistration,
+        silhouettes: Option<Similarity>,
+        plain: Option<Similarity>,
+    ) -> Option<Self> {
+        let mut search = Search::for_parts(&problem(pair, photometric)).ok()?;
+        let score_of_silhouettes =
+            silhouettes.and_then(|pose| search.score_of(&pose)).map_or(0.0, |score| score.max(0.0));
+        let known = silhouettes.into_iter().chain(plain).collect();
+        Some(Self { search, known, score_of_silhouettes, stage: Stage::Search })
     }
 
     /// Runs one slice; returns the choice at the end.
@@ -72,7 +82,7 @@ impl SecondSearch {
             Stage::Roughly(next, ends) => {
                 if let Some(candidate) = self.search.candidates().get(*next) {
                     if let Some(found) = photometric.register_roughly(pair, &candidate.pose, ROUGH_POINTS) {
-                        ends.enter(Origin::Candidate(*next), registered(pair, photometric, found));
+                        enter(ends, &mut self.search, *next, found);
                     }
                     *next += 1;
                     return None;
@@ -83,7 +93,7 @@ impl SecondSearch {
                 self.stage = Stage::Closely { optima: optima(starts.len()), starts, is_begun: false };
             }
             Stage::Closely { starts, is_begun, optima } => {
-                let Some(start) = starts.last() else { return Some(explained(pair, optima)) };
+                let Some(start) = starts.last() else { return Some(self.choice()) };
                 if !*is_begun {
                     photometric.keep_near(aligned_prior(pair, *start, ANYWHERE_DEGREES));
                 }
@@ -93,12 +103,23 @@ impl SecondSearch {
                     starts.pop();
                     let least = LEAST_VISIBLE * pair.depth.valid().min(CANDIDATE_POINTS) as f64;
                     if let Some(found) = found.filter(|found| found.visible as f64 >= least) {
-                        optima.enter(Origin::Candidate(starts.len()), registered(pair, photometric, found));
+                        enter(optima, &mut self.search, starts.len(), found);
                     }
                 }
             }
         }
         None
+    }
+
+    /// The choice among the ends if the best one is better than silhouettes, otherwise none.
+    fn choice(&mut self) -> Choice {
+        let Stage::Closely { optima, .. } = &mut self.stage else { return Choice::default() };
+        let ranking = optima.ranked();
+        let score = ranking.best.as_ref().and_then(|best| self.search.score_of(&best.registered.pose));
+        match score.is_some_and(|score| score >= LEAST_SCORE.max(LEAST_RATIO * self.score_of_silhouettes)) {
+            true => Choice::of(ranking),
+            false => Choice::default(),
+        }
     }
 
     /// Share of the work done, and the current activity.
@@ -117,23 +138,9 @@ impl SecondSearch {
     }
 }
 
-/// The choice among the ends if the best one explains the points that it sees, otherwise none.
-fn explained(pair: &ViewPair, optima: &mut LocalOptima) -> Choice {
-    let ranking = optima.ranked();
-    let largest = LARGEST_NOISE_OF_SEEN * pair.image.log_spread();
-    match ranking.best.as_ref().is_some_and(|best| best.registered.noise <= largest) {
-        true => Choice::of(ranking),
-        false => Choice::default(),
+/// Enters the end of a registration with its score.
+fn enter(optima: &mut LocalOptima, search: &mut Search, origin: usize, found: Box<PhotometricReport>) {
+    if let Some(score) = search.score_of(&found.pose) {
+        optima.enter_scored(Origin::Candidate(origin), RegisteredCandidate::of(found), score);
     }
-}
-
-/// An end for the comparison. Its noise, as a share of the spread of the points that it sees, is given in units of the
-/// image's spread.
-fn registered(
-    pair: &ViewPair,
-    photometric: &PhotometricRegistration,
-    found: Box<PhotometricReport>,
-) -> RegisteredCandidate {
-    let noise = found.noise * pair.image.log_spread() / photometric.spread(pair);
-    RegisteredCandidate { noise, ..RegisteredCandidate::of(found) }
 }

@@ -93,14 +93,14 @@ impl VaryingAlbedo {
         if self.silhouettes.as_ref().is_some_and(|found| found.noise <= LARGEST_MISFIT * area.sqrt()) {
             return None;
         }
-        let found = self.silhouettes.iter().map(|found| found.pose);
-        let known = found.chain(plain.map(|plain| plain.pose));
+        let silhouettes = self.silhouettes.as_ref().map(|found| found.pose);
+        let plain = plain.map(|plain| plain.pose);
         match halved {
             Some(halved) => {
-                let known = known.map(|pose| halved.pose_in(&pose)).collect();
-                SecondSearch::new(&halved.pair, &halved.photometric, known)
+                let [silhouettes, plain] = [silhouettes, plain].map(|pose| pose.map(|pose| halved.pose_in(&pose)));
+                SecondSearch::new(&halved.pair, &halved.photometric, silhouettes, plain)
             }
-            None => SecondSearch::new(pair, photometric, known.collect()),
+            None => SecondSearch::new(pair, photometric, silhouettes, plain),
         }
     }
 

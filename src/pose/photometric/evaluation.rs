@@ -77,23 +77,6 @@ impl Evaluation<'_> {
         f64::from(quantile(scratch, 0.5)) / robust::MEDIAN_OF_THREE
     }
 
-    /// Standard deviation of a channel of log S over the points; zero without points.
-    pub fn spread(&self) -> f64 {
-        let (mut total, mut sums, mut squares) = (0.0, [0.0; 3], 0.0);
-        for (indices, weight) in self.points.lane_groups() {
-            let samples = self.model.sample(self.problem.points(&self.state.pose, &indices));
-            let weight = weight * samples.shown;
-            total += weight.sum();
-            for (sum, log) in sums.iter_mut().zip(samples.log) {
-                *sum += (weight * log).sum();
-                squares += (weight * log * log).sum();
-            }
-        }
-        let total = f64::max(total, f64::MIN_POSITIVE);
-        let means: f64 = sums.iter().map(|sum| (sum / total).powi(2)).sum();
-        ((squares / total - means) / 3.0).max(0.0).sqrt()
-    }
-
     /// The equations of the pose with the light eliminated; `None` if the points do not determine the light.
     pub fn reduced_system(&self, frame: &Frame) -> Option<ReducedSystem> {
         self.system_without_noise(frame, None)

@@ -182,11 +182,6 @@ impl Photometric {
         self.magnitudes = magnitudes;
     }
 
-    /// Standard deviation of a channel of log S over the present points.
-    pub(crate) fn spread(&self, problem: &PhotometricProblem<'_>) -> f64 {
-        self.evaluation(problem, 0, &self.state).spread()
-    }
-
     /// Sets a robust scale, and the prior's weight at the present light.
     pub(super) fn weigh(&mut self, problem: &PhotometricProblem<'_>, robust_scale: f64) {
         let prior = prior_weight(problem, &self.state.light, self.noise.residuals);

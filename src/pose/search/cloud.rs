@@ -6,6 +6,7 @@
 
 use nalgebra::Vector3;
 
+use super::contrast::{RELIEF, relief};
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::quantile;
 use crate::view::{Normals, Points, Size};
@@ -27,6 +28,8 @@ pub struct Patch {
     pub position: [f32; 3],
     pub normal: [f32; 3],
     pub area: f32,
+    /// Regressors of the albedo that follows the relief; zeros if they are not compared.
+    pub relief: [f32; RELIEF],
 }
 
 /// The sparse cloud of the depth view.
@@ -41,6 +44,7 @@ pub struct Cloud {
 struct Block {
     point: Vector3<f64>,
     normal: Vector3<f64>,
+    relief: [f64; RELIEF],
     count: f64,
 }
 
@@ -53,7 +57,8 @@ impl Block {
 impl Cloud {
     /// # Errors
     /// [`ErrorKind::Empty`] if too little of the view has a normal.
-    pub fn new(size: Size, points: &Points, normals: &Normals) -> Result<Self> {
+    pub fn new(size: Size, points: &Points, normals: &Normals, with_relief: bool) -> Result<Self> {
+        let relief = if with_relief { relief(size, normals) } else { Vec::new() };
         let usable = |&index: &usize| points.is_valid(index) && normals.is_valid(index);
         let count = (0..size.len()).filter(usable).count();
         let side = ((count as f64 / MOST_PATCHES as f64).sqrt().ceil() as usize).max(1);
@@ -64,6 +69,9 @@ impl Cloud {
             let block = &mut blocks[raster.index(column / side, row / side)];
             block.point += Vector3::from(points.get(index).map(f64::from));
             block.normal += Vector3::from(normals.get(index).map(f64::from));
+            if let Some(relief) = relief.get(index) {
+                block.relief.iter_mut().zip(relief).for_each(|(sum, &value)| *sum += f64::from(value));
+            }
             block.count += 1.0;
         }
         let mut cloud = Self { patches: Vec::with_capacity(count), centre: Vector3::zeros() };
@@ -89,6 +97,7 @@ impl Cloud {
                 position: (point - self.centre).map(|value| value as f32).into(),
                 normal: block.normal.normalize().map(|value| value as f32).into(),
                 area: area as f32,
+                relief: block.relief.map(|sum| (sum / block.count) as f32),
             });
         }
     }

@@ -7,11 +7,12 @@
 //! each transform: the transform of f_0 + i f_1, correlated with a real field, holds the correlation of f_0 in its real
 //! part and that of f_1, negated, in its imaginary part.
 //!
-//! Cost: 21 transforms for an unknown light, 5 for a known one.
+//! Cost: 21 transforms for an unknown light, 25 with local contrast, 5 for a known light.
 
+use super::contrast::WITH_RELIEF;
 use super::score::{FEWEST_CELLS, Gram, Prediction, regularised};
 use super::target::{CELLS, Fourier, SIDE, Target};
-use super::template::{PRODUCTS, Template};
+use super::template::{Template, products};
 use crate::light::HARMONICS;
 use crate::numeric::fourier::planes::{Field, opposite};
 use nalgebra::Complex;
@@ -22,8 +23,12 @@ const NORM: f32 = 1.0 / CELLS as f32;
 const PROPOSALS: usize = 3;
 /// Smallest share of the template, or of the mask if that is smaller, that a translation has to bring into overlap.
 const LEAST_TEMPLATE_OVERLAP: f32 = 0.15;
-/// Number of complex fields for the nine harmonics, two in each.
-const PAIRS: usize = HARMONICS.div_ceil(2);
+/// Number of complex fields for the values of a template, two in each.
+const fn pairs(channels: usize) -> usize {
+    channels.div_ceil(2)
+}
+/// Largest number of fields.
+const PAIRS: usize = pairs(WITH_RELIEF);
 /// Lower bound of sums of squares, in squares of balanced colours. It keeps their quotient and logarithm finite.
 const LEAST_SQUARE: f32 = 1e-3;
 
@@ -59,7 +64,8 @@ impl Correlator {
         target: &Target,
     ) -> impl Iterator<Item = [i32; 2]> + use<> {
         let scored = match prediction {
-            None => self.score_fits(template, target),
+            None if template.is_by_contrast() => self.score_fits::<WITH_RELIEF>(template, target),
+            None => self.score_fits::<HARMONICS>(template, target),
             Some(prediction) => {
                 self.score_prediction(template, prediction, target);
                 Some(())
@@ -72,12 +78,12 @@ impl Correlator {
     }
 
     /// Computes the scores of all translations under an unknown light.
-    fn score_fits(&mut self, template: &Template, target: &Target) -> Option<()> {
-        let weight = self.whitened(template)?;
-        self.fields.iter_mut().for_each(|field| self.fourier.forward(field));
+    fn score_fits<const C: usize>(&mut self, template: &Template, target: &Target) -> Option<()> {
+        let weight = self.whitened::<C>(template)?;
+        self.fields[..pairs(C)].iter_mut().for_each(|field| self.fourier.forward(field));
         self.scores.fill(0.0);
         self.mean.fill(0.0);
-        for pair in 0..PAIRS {
+        for pair in 0..pairs(C) {
             for colour in &target.spectra.colour {
                 self.pair_with_channel(pair, colour);
             }
@@ -102,26 +108,26 @@ impl Correlator {
         Some(())
     }
 
-    /// Fills the fields with harmonics that are orthonormal over the template, two in each. Returns the root of the
+    /// Fills the fields with values that are orthonormal over the template, two in each. Returns the root of the
     /// template's weight.
-    fn whitened(&mut self, template: &Template) -> Option<f32> {
-        let mut gram = [0.0_f32; PRODUCTS];
-        for products in &template.products {
-            gram.iter_mut().zip(products).for_each(|(sum, product)| *sum += product);
+    fn whitened<const C: usize>(&mut self, template: &Template) -> Option<f32> {
+        let mut gram = [0.0_f32; products(WITH_RELIEF)];
+        for of_cell in &template.products {
+            gram[..products(C)].iter_mut().zip(of_cell).for_each(|(sum, product)| *sum += product);
         }
-        let lower = regularised(&gram).cholesky()?.unpack();
+        let lower = regularised::<C>(&gram).cholesky()?.unpack();
         let inverse = lower.solve_lower_triangular(&Gram::identity())?.map(|value| value as f32);
         // Columns of the inverse, padded to the number of places in the pairs.
-        let mut columns = [[0.0; 2 * PAIRS]; HARMONICS];
-        (0..HARMONICS).for_each(|k| columns[k][..HARMONICS].copy_from_slice(inverse.column(k).as_slice()));
-        self.fields.iter_mut().for_each(Field::clear);
+        let mut columns = [[0.0; 2 * PAIRS]; C];
+        (0..C).for_each(|k| columns[k][..C].copy_from_slice(inverse.column(k).as_slice()));
+        self.fields[..pairs(C)].iter_mut().for_each(Field::clear);
         for &cell in &template.cells {
             let cell = cell as usize;
             let mut whitened = [0.0; 2 * PAIRS];
             for (column, sum) in columns.iter().zip(&template.sums[cell]) {
                 whitened.iter_mut().zip(column).for_each(|(value, share)| *value += share * sum);
             }
-            for (pair, field) in self.fields.iter_mut().enumerate() {
+            for (pair, field) in self.fields[..pairs(C)].iter_mut().enumerate() {
                 (field.re[cell], field.im[cell]) = (whitened[2 * pair], whitened[2 * pair + 1]);
             }
         }

@@ -70,7 +70,17 @@ impl Geometry {
             magnification: (size * pixels / cell) as f32,
             ray: self.ray.map(|value| value as f32),
             inverse_distance: (size * inverse_distance) as f32,
+            offset: [0.0; 2],
         }
+    }
+
+    /// Apparent size of a pose behind a pinhole, and where it puts the centre of the cloud, in cells from the middle;
+    /// `None` if the camera does not see it.
+    pub fn size_and_place(&self, pose: &Similarity, cloud: &Cloud, target: &Target) -> Option<(f64, [f64; 2])> {
+        let centre = pose.apply(cloud.centre);
+        let pixel = self.camera.project(self.image, centre.into())?;
+        let place = [0, 1].map(|axis| (pixel[axis] - target.middle[axis]) / target.cell);
+        Some((self.distance? / centre.z, place))
     }
 
     /// The pose of a hypothesis.

@@ -9,7 +9,7 @@ use super::hypothesis::Hypothesis;
 use super::problem::{Candidate, SearchProblem};
 use super::score::{FEWEST_CELLS, Prediction, score};
 use super::target::{Fourier, SIDE, Target};
-use super::template::Template;
+use super::template::{GridProjection, Template};
 use crate::error::Result;
 use crate::pose::similarity::Similarity;
 use crate::view::ColourView;
@@ -28,7 +28,16 @@ impl ImageGrid {
     /// [`Degenerate`](crate::ErrorKind::Degenerate) if all colours are the same.
     pub fn new(image: &ColourView) -> Result<Self> {
         let mut fourier = Fourier::new();
-        Ok(Self { target: Target::new(image, SIDE, &mut fourier)?, fourier })
+        Ok(Self { target: Target::new(image, SIDE, &mut fourier, false)?, fourier })
+    }
+
+    /// The grid of the image's local contrast.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of_contrast(image: &ColourView) -> Result<Self> {
+        let mut fourier = Fourier::new();
+        Ok(Self { target: Target::new(image, SIDE, &mut fourier, true)?, fourier })
     }
 }
 
@@ -47,10 +56,11 @@ impl Matcher {
     /// # Errors
     /// [`Empty`](crate::ErrorKind::Empty) if too few pixels have a normal.
     pub fn new(problem: &SearchProblem<'_>, ImageGrid { target, fourier }: ImageGrid) -> Result<Self> {
-        let cloud = Cloud::new(problem.depth.size, &problem.depth.points, problem.normals)?;
+        let by_contrast = target.by_contrast;
+        let cloud = Cloud::new(problem.depth.size, &problem.depth.points, problem.normals, by_contrast)?;
         Ok(Self {
             geometry: Geometry::new(problem, &target, &cloud),
-            template: Template::new(SIDE, &cloud),
+            template: Template::new(SIDE, &cloud, by_contrast),
             prediction: problem.light.map(|light| Prediction::new(light, &target)),
             correlator: Correlator::new(fourier),
             cloud,
@@ -75,7 +85,7 @@ impl Matcher {
 
     /// The best translation for a rotation and a size; `None` if too little of the cloud is visible.
     pub fn best_shift(&mut self, rotation: Matrix3<f64>, size: f64) -> Option<Hypothesis> {
-        if !self.draw(&rotation, size) {
+        if !self.draw(&rotation, &self.projection(size)) {
             return None;
         }
         let proposals = self.correlator.proposals(&self.template, self.prediction.as_ref(), &self.target);
@@ -86,7 +96,7 @@ impl Matcher {
     /// Scores the hypothesis and moves it to the best translation nearby.
     pub fn best_shift_nearby(&mut self, mut hypothesis: Hypothesis) -> Hypothesis {
         hypothesis.score = f64::NEG_INFINITY;
-        if !self.draw(&hypothesis.rotation, hypothesis.size) {
+        if !self.draw(&hypothesis.rotation, &self.projection(hypothesis.size)) {
             return hypothesis;
         }
         hypothesis.score = self.score(hypothesis.shift);
@@ -109,9 +119,22 @@ impl Matcher {
         Candidate { pose, score: hypothesis.score }
     }
 
+    /// The score of a pose behind a pinhole, between cells; `None` if too little overlaps.
+    pub fn score_of(&mut self, pose: &Similarity) -> Option<f64> {
+        let (size, place) = self.geometry.size_and_place(pose, &self.cloud, &self.target)?;
+        let whole = place.map(f64::round);
+        let offset = [0, 1].map(|axis| (place[axis] - whole[axis]) as f32);
+        let projection = GridProjection { offset, ..self.projection(size) };
+        self.draw(&pose.rotation, &projection).then(|| self.score(whole.map(|cells| cells as i32)))
+    }
+
+    fn projection(&self, size: f64) -> GridProjection {
+        self.geometry.projection(size, self.target.cell)
+    }
+
     /// Draws the rotated cloud as a template. Returns whether enough of the cloud is visible.
-    fn draw(&mut self, rotation: &Matrix3<f64>, size: f64) -> bool {
-        self.template.draw(&self.cloud, rotation, &self.geometry.projection(size, self.target.cell));
+    fn draw(&mut self, rotation: &Matrix3<f64>, projection: &GridProjection) -> bool {
+        self.template.draw(&self.cloud, rotation, projection);
         if self.template.visible < FEWEST_CELLS {
             return false;
         }

@@ -20,17 +20,19 @@
 //! | `matcher` | the score of a hypothesis, the best translation of a rotation |
 //! | `cloud`, `template` | the depth view as patches, and their appearance to the colour camera |
 //! | `target` | the colour view on the grid |
+//! | `contrast` | local contrast in place of colours, for varying albedo |
 //! | `score`, `correlate` | fit of a template to a target: at one translation exactly, at all translations at once |
 //! | `geometry` | from hypotheses to poses |
 //! | `task_results` | results that may come in any order |
 //!
 //! Limits: tilt up to 100 degrees with roll up to 32, or any rotation up to 76 degrees. Candidates end a few degrees
 //! from the truth. The search misses tilts beyond 60 degrees if the depth map shows half of the object, where the views
-//! share too little, and overlaps below 0.15. It models neither shadows nor varying albedo.
+//! share too little, and overlaps below 0.15. It does not model shadows.
 
 mod ascent;
 mod cloud;
 mod coarse_search;
+mod contrast;
 mod correlate;
 mod geometry;
 mod hypothesis;

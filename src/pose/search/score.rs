@@ -7,12 +7,16 @@
 //! cancel. N / V is the share of the visible cells that lie on the mask: points that should be visible but lie off the
 //! object reduce the score.
 //!
-//! Limits: every cell counts as independent, and shadows and varying albedo are not modelled.
+//! With local contrast, the fit has three more regressors, and little of the variance is left to explain. E is then
+//! divided by N less the number of coefficients, because so many coefficients explain noise as well.
+//!
+//! Limits: every cell counts as independent, and shadows are not modelled.
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
+use super::contrast::WITH_RELIEF;
 use super::target::Target;
-use super::template::{PADDED, PRODUCTS, Products, Sums, Template, row_start};
+use super::template::{PADDED, Products, Sums, Template, products, row_start};
 use crate::light::{HARMONICS, Light, basis};
 
 /// Variance e added to the balanced colours, whose first axis has variance one. A tilt by half the spacing of the rotations
@@ -25,8 +29,8 @@ const RIDGE_OF_WEIGHT: f64 = 1e-4;
 /// Smallest number of cells of an overlap. Nine harmonics fit any colours of nine cells.
 pub const FEWEST_CELLS: f32 = 12.0;
 
-/// Sums over some cells of the products of the harmonics.
-pub type Gram = SMatrix<f64, HARMONICS, HARMONICS>;
+/// Sums over some cells of the products of the first C values.
+pub type Gram<const C: usize> = SMatrix<f64, C, C>;
 
 /// Balanced colours of a known light at every cell of a template, without their mean along the exposure.
 pub struct Prediction {
@@ -68,11 +72,14 @@ impl Prediction {
 /// The score of a template moved by whole cells; `None` if too little overlaps.
 pub fn score(template: &Template, prediction: Option<&Prediction>, target: &Target, shift: [i32; 2]) -> Option<f64> {
     let (total, residual, cells) = match prediction {
-        None => squares_of_fit(template, target, shift)?,
+        None if template.is_by_contrast() => squares_of_fit::<WITH_RELIEF>(template, target, shift)?,
+        None => squares_of_fit::<HARMONICS>(template, target, shift)?,
         Some(prediction) => squares_of_prediction(template, prediction, target, shift)?,
     };
     let floor = Matrix3::identity() * UNEXPLAINED;
     let gain = ((total / cells + floor).determinant() / (residual / cells + floor).determinant()).ln() / 3.0;
+    let freedom = if template.is_by_contrast() { (cells - WITH_RELIEF as f64).max(1.0) / (cells - 1.0) } else { 1.0 };
+    let gain = gain + freedom.ln();
     gain.is_finite().then(|| gain * cells * cells / f64::from(template.visible))
 }
 
@@ -95,13 +102,13 @@ fn overlap<'a>(
     })
 }
 
-fn squares_of_fit(template: &Template, target: &Target, shift: [i32; 2]) -> Option<Squares> {
-    let mut gram = [0.0_f32; PRODUCTS];
+fn squares_of_fit<const C: usize>(template: &Template, target: &Target, shift: [i32; 2]) -> Option<Squares> {
+    let mut gram = [0.0_f32; products(WITH_RELIEF)];
     let mut cross = [[0.0_f32; PADDED]; 3];
     let mut outer = [0.0_f32; 6];
     for (order, sums, place) in overlap(template, target, shift) {
         let mask = target.mask[place];
-        gram.iter_mut().zip(&template.products[order]).for_each(|(sum, product)| *sum += mask * product);
+        gram[..products(C)].iter_mut().zip(&template.products[order]).for_each(|(sum, product)| *sum += mask * product);
         let colour = [target.colour[0][place], target.colour[1][place], target.colour[2][place]];
         for (cross, value) in cross.iter_mut().zip(colour) {
             let share = mask * value;
@@ -111,8 +118,8 @@ fn squares_of_fit(template: &Template, target: &Target, shift: [i32; 2]) -> Opti
     }
     let cells = gram[0];
     let enough = cells >= FEWEST_CELLS;
-    let factor = regularised(&gram).cholesky().filter(|_| enough)?;
-    let cross = SMatrix::<f64, HARMONICS, 3>::from_fn(|k, channel| f64::from(cross[channel][k]));
+    let factor = regularised::<C>(&gram).cholesky().filter(|_| enough)?;
+    let cross = SMatrix::<f64, C, 3>::from_fn(|k, channel| f64::from(cross[channel][k]));
     let explained = cross.transpose() * factor.solve(&cross);
     let (outer, cells) = (symmetric(&outer), f64::from(cells));
     let sum = cross.row(0);
@@ -120,12 +127,12 @@ fn squares_of_fit(template: &Template, target: &Target, shift: [i32; 2]) -> Opti
 }
 
 /// The Gram matrix from sums of products, with the ridge.
-pub fn regularised(products: &Products) -> Gram {
+pub fn regularised<const C: usize>(products: &Products) -> Gram<C> {
     let mut gram = Gram::from_fn(|row, column| {
         let (long, short) = (row.max(column), row.min(column));
         f64::from(products[row_start(long) + short])
     });
-    for k in 1..HARMONICS {
+    for k in 1..C {
         gram[(k, k)] += RIDGE * gram[(k, k)] + RIDGE_OF_WEIGHT * gram[(0, 0)];
     }
     gram

@@ -3,12 +3,13 @@
 //! y = W (log S - mean), where W holds the principal axes of the object's colours, each divided by the root of its
 //! standard deviation. This is half-way between plain and whitened differences. Plain differences show hardly anything
 //! but brightness. In whitened differences the faint chromaticity of natural light counts as much as its brightness,
-//! but so does noise.
+//! but so does noise. With local contrast, H is applied to log S first.
 //!
 //! Limits: the grid spans the mask. If the mask is the whole frame, a small object has few cells.
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::contrast::GridContrast;
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::eigen::symmetric_eigen;
 use crate::numeric::fourier::planes::{Field, PlaneFourier};
@@ -46,6 +47,8 @@ pub struct Target {
     /// W, and the mean that is subtracted before it is applied.
     pub balance: Matrix3<f64>,
     pub mean: Vector3<f64>,
+    /// Whether y is the local contrast.
+    pub by_contrast: bool,
     /// Spectra of the mask, of mask |y|^2 and of mask y.
     pub spectra: Spectra,
 }
@@ -61,7 +64,7 @@ pub struct Spectra {
 impl Target {
     /// # Errors
     /// [`ErrorKind::Degenerate`] if all colours are the same.
-    pub fn new(view: &ColourView, side: usize, fourier: &mut Fourier) -> Result<Self> {
+    pub fn new(view: &ColourView, side: usize, fourier: &mut Fourier, by_contrast: bool) -> Result<Self> {
         // This is tested on pixels, because their means over cells differ by rounding. Bright colours have large
         // logarithms.
         if view.log_spread() <= f64::from(f32::EPSILON) * (1.0 + view.log_mean().abs()) {
@@ -69,6 +72,9 @@ impl Target {
         }
         let (cell, middle) = frame(view);
         let (mask, mut colour) = cells(view, side, cell, middle);
+        if by_contrast {
+            GridContrast::new().of_image(&mask, &mut colour);
+        }
         let (mean, covariance) = mean_and_covariance(&mask, &colour);
         let balance = balance(&covariance)?;
         for index in (0..mask.len()).filter(|&index| mask[index] > 0.0) {
@@ -89,7 +95,7 @@ impl Target {
             colour: [0, 1, 2].map(|channel: usize| spectrum(&|index| mask[index] * colour[channel][index])),
         };
         let covered = mask.iter().sum();
-        Ok(Self { side, cell, middle, mask, covered, colour, balance, mean, spectra })
+        Ok(Self { side, cell, middle, mask, covered, colour, balance, mean, by_contrast, spectra })
     }
 }
 

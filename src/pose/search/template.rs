@@ -1,7 +1,8 @@
 //! Appearance of the rotated cloud to the colour camera, on the search grid.
 //!
 //! Each patch that faces the camera and is not hidden spreads its projected area w over the four cells around it, with
-//! the nine harmonics of its rotated normal: a cell holds w and w B_k(n). Coverage is at most one.
+//! the nine harmonics of its rotated normal: a cell holds w and w B_k(n). Coverage is at most one. With local contrast,
+//! a cell also holds w times the regressors of the relief, and H is applied to all values.
 //!
 //! Limits: a patch is hidden if it lies behind the nearest patch of its cell or of the neighbouring cells by more than
 //! a tolerance, so thin structures close behind each other show through. Patches off the grid are not seen.
@@ -9,6 +10,7 @@
 use nalgebra::Matrix3;
 
 use super::cloud::Cloud;
+use super::contrast::{GridContrast, RELIEF, WITH_RELIEF};
 use crate::light::{HARMONICS, basis};
 
 /// Smallest cosine between a normal and the direction to the camera; more oblique patches are slivers on the grid.
@@ -19,10 +21,10 @@ const HIDDEN: f32 = 2.5;
 
 /// Number of values that are added and multiplied at once.
 const LANES: usize = 4;
-/// Number of harmonics rounded up to whole lanes.
-pub const PADDED: usize = HARMONICS.next_multiple_of(LANES);
+/// Largest number of a cell's values, rounded up to whole lanes.
+pub const PADDED: usize = WITH_RELIEF.next_multiple_of(LANES);
 
-/// Weight w, then w B_k for the harmonics after the constant one, then zeros.
+/// Weight w, then w B_k for the harmonics after the constant one, then w times the regressors of the relief, or zeros.
 pub type Sums = [f32; PADDED];
 
 /// Start of a row of the lower triangle of products; a row has as many lanes as reach the diagonal.
@@ -31,10 +33,12 @@ pub const fn row_start(row: usize) -> usize {
     LANES * (lanes + 1) * (row - LANES * lanes + LANES * lanes / 2)
 }
 
-/// Number of products of two harmonics.
-pub const PRODUCTS: usize = row_start(HARMONICS - 1) + PADDED;
+/// Number of products of two values, up to a number of values.
+pub const fn products(channels: usize) -> usize {
+    row_start(channels - 1) + LANES * channels.div_ceil(LANES)
+}
 /// w B_k B_l.
-pub type Products = [f32; PRODUCTS];
+pub type Products = [f32; products(WITH_RELIEF)];
 
 /// Projection of patches onto the grid, by a camera that looks along `ray` (x and y at z = 1) at the centre of the
 /// cloud.
@@ -45,6 +49,8 @@ pub struct GridProjection {
     pub ray: [f32; 2],
     /// Inverse of the distance of the centre in units of the depth view; zero for parallel rays.
     pub inverse_distance: f32,
+    /// Shift of the centre from the middle of its cell, cells.
+    pub offset: [f32; 2],
 }
 
 /// The rotated cloud on a square grid; the centre of the cloud lies in cell (side / 2, side / 2).
@@ -54,7 +60,7 @@ pub struct Template {
     pub sums: Vec<Sums>,
     /// Indices of the cells that are not empty.
     pub cells: Vec<u32>,
-    /// Products of the harmonics in those cells, in the same order.
+    /// Products of the values in those cells, in the same order.
     pub products: Vec<Products>,
     /// Sum of the cells' coverage.
     pub visible: f32,
@@ -62,12 +68,15 @@ pub struct Template {
     nearest: Vec<f32>,
     /// Column, row and depth of every patch, cells.
     positions: Vec<[f32; 3]>,
+    /// Local contrast, if it is compared in place of the colours.
+    contrast: Option<GridContrast>,
 }
 
 impl Template {
-    pub fn new(side: usize, cloud: &Cloud) -> Self {
+    pub fn new(side: usize, cloud: &Cloud, by_contrast: bool) -> Self {
         Self {
             side,
+            contrast: by_contrast.then(GridContrast::new),
             sums: vec![[0.0; PADDED]; side * side],
             cells: Vec::with_capacity(side * side),
             products: Vec::with_capacity(side * side),
@@ -75,6 +84,11 @@ impl Template {
             nearest: vec![f32::INFINITY; side * side],
             positions: Vec::with_capacity(cloud.patches.len()),
         }
+    }
+
+    /// Whether local contrast is compared in place of the colours.
+    pub const fn is_by_contrast(&self) -> bool {
+        self.contrast.is_some()
     }
 
     /// Draws the cloud under `rotation`, replacing the previous drawing. Allocates nothing.
@@ -92,7 +106,7 @@ impl Template {
                 index,
                 corner,
                 patch.area * projection.magnification * projection.magnification * facing,
-                normal,
+                &values(normal, patch.relief),
             );
         }
         for &cell in &self.cells {
@@ -101,16 +115,20 @@ impl Template {
             sums.iter_mut().for_each(|sum| *sum /= excess);
             self.visible += sums[0];
         }
+        if let Some(contrast) = &mut self.contrast {
+            contrast.of_template(&mut self.sums, &self.cells);
+        }
     }
 
-    /// Multiplies the harmonics of each cell with each other. Allocates nothing.
+    /// Multiplies the values of each cell with each other. Allocates nothing.
     pub fn multiply(&mut self) {
         self.products.clear();
+        let channels = if self.is_by_contrast() { WITH_RELIEF } else { HARMONICS };
         for sums in self.cells.iter().map(|&cell| &self.sums[cell as usize]) {
-            let mut products = [0.0; PRODUCTS];
+            let mut products = [0.0; products(WITH_RELIEF)];
             let per_weight = 1.0 / sums[0];
             let all = sums.as_chunks::<LANES>().0;
-            for row in 0..HARMONICS {
+            for row in 0..channels {
                 let scaled = sums[row] * per_weight;
                 let lanes = &mut products[row_start(row)..].as_chunks_mut::<LANES>().0[..=row / LANES];
                 for (products, sums) in lanes.iter_mut().zip(all) {
@@ -141,8 +159,8 @@ impl Template {
             // (ray D + x) / (D + z) - ray = (x - ray z) / (D + z)
             let slant = if projection.inverse_distance > 0.0 { projection.ray } else { [0.0; 2] };
             let position = [
-                (x - slant[0] * z) * shrink + middle,
-                (y - slant[1] * z) * shrink + middle,
+                (x - slant[0] * z) * shrink + middle + projection.offset[0],
+                (y - slant[1] * z) * shrink + middle + projection.offset[1],
                 z * projection.magnification,
             ];
             self.positions.push(position);
@@ -170,12 +188,9 @@ impl Template {
         (z <= nearest + HIDDEN).then(|| y as usize * self.side + x as usize)
     }
 
-    fn spread(&mut self, index: usize, corner: usize, area: f32, normal: [f32; 3]) {
+    fn spread(&mut self, index: usize, corner: usize, area: f32, values: &Sums) {
         let [x, y, _] = self.positions[index];
         let (right, low) = (x - (x as usize) as f32, y - (y as usize) as f32);
-        let mut harmonics = [0.0; PADDED];
-        harmonics[..HARMONICS].copy_from_slice(&basis(normal));
-        harmonics[0] = 1.0;
         for (cell, share) in [
             (corner, (1.0 - right) * (1.0 - low)),
             (corner + 1, right * (1.0 - low)),
@@ -190,9 +205,18 @@ impl Template {
             if sums[0] <= 0.0 {
                 self.cells.push(cell as u32);
             }
-            (0..PADDED).for_each(|k| sums[k] += weight * harmonics[k]);
+            (0..PADDED).for_each(|k| sums[k] += weight * values[k]);
         }
     }
+}
+
+/// The values of a patch with weight one.
+fn values(normal: [f32; 3], relief: [f32; RELIEF]) -> Sums {
+    let mut values = [0.0; PADDED];
+    values[..HARMONICS].copy_from_slice(&basis(normal));
+    values[0] = 1.0;
+    values[HARMONICS..WITH_RELIEF].copy_from_slice(&relief);
+    values
 }
 
 /// The cell nearest to a nonnegative coordinate; `round` is a function call on some targets.
