@@ -6,7 +6,8 @@
 
 use nalgebra::Vector3;
 
-use super::contrast::{RELIEF, relief};
+use super::contrast::relief;
+use super::values::RELIEF;
 use crate::error::{Error, ErrorKind, Result};
 use crate::numeric::quantile;
 use crate::view::{Normals, Points, Size};

@@ -5,22 +5,14 @@
 //! which nine harmonics happen to fit it scores higher than the right one. What is left by H is mostly shading of small
 //! relief, and albedo that follows the curvature.
 
-use crate::light::HARMONICS;
 use crate::pose::contrast::LocalMeans;
 use crate::pose::curvature::curvatures;
 use crate::view::{Normals, Size};
 
-use super::target::SIDE;
-use super::template::Sums;
+use super::values::{RELIEF, Sums};
 
 /// Sigma of the local means in cells. Set on pairs of a statue (docs/lab/thresholds.md).
 const MEANS: f64 = 2.0;
-/// Number of regressors by which the albedo follows the relief: the fine and the coarse curvature, and the square of
-/// the latter. More would not fit the lanes of [`Sums`].
-pub const RELIEF: usize = 3;
-/// Number of coefficients of a fit with them.
-pub const WITH_RELIEF: usize = HARMONICS + RELIEF;
-
 /// The regressors of each depth pixel.
 pub fn relief(size: Size, normals: &Normals) -> Vec<[f32; RELIEF]> {
     let [fine, coarse] = curvatures(size, normals);
@@ -34,9 +26,9 @@ pub struct GridContrast {
 }
 
 impl GridContrast {
-    pub fn new() -> Self {
-        let cells = SIDE * SIDE;
-        Self { means: LocalMeans::new(SIDE, cells, MEANS), weights: vec![0.0; cells] }
+    pub fn new(side: usize) -> Self {
+        let cells = side * side;
+        Self { means: LocalMeans::new(side, cells, MEANS), weights: vec![0.0; cells] }
     }
 
     /// Applies H to the sums of every cell of a template, which are weighted by the first one. Allocates nothing.
@@ -70,8 +62,10 @@ impl GridContrast {
 
 #[cfg(test)]
 mod tests {
-    use super::super::template::PADDED;
+    use super::super::values::PADDED;
     use super::*;
+
+    const SIDE: usize = 32;
 
     /// A square of cells, away from the border of the grid.
     fn square() -> Vec<u32> {
@@ -93,7 +87,7 @@ mod tests {
             (0..4).for_each(|k| sums[cell as usize][k] = weight * values[k]);
         }
         let before = sums.clone();
-        GridContrast::new().of_template(&mut sums, &cells);
+        GridContrast::new(SIDE).of_template(&mut sums, &cells);
         let middle = 16 * SIDE + 16;
         let [weight, constant, slow, fast, ..] = sums[middle].map(|sum| sum / before[middle][0]);
         assert_eq!(weight, 1.0);
@@ -112,7 +106,7 @@ mod tests {
             colour[1][cell] = value;
             sums[cell][..2].copy_from_slice(&[0.8, 0.8 * value]);
         }
-        let mut contrast = GridContrast::new();
+        let mut contrast = GridContrast::new(SIDE);
         contrast.of_template(&mut sums, &cells);
         contrast.of_image(&mask, &mut colour);
         for cell in cells.iter().map(|&cell| cell as usize) {

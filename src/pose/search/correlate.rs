@@ -9,10 +9,10 @@
 //!
 //! Cost: 21 transforms for an unknown light, 25 with local contrast, 5 for a known light.
 
-use super::contrast::WITH_RELIEF;
 use super::score::{FEWEST_CELLS, Gram, Prediction, regularised};
 use super::target::{CELLS, Fourier, SIDE, Target};
-use super::template::{Template, products};
+use super::template::Template;
+use super::values::{WITH_RELIEF, products};
 use crate::light::HARMONICS;
 use crate::numeric::fourier::planes::{Field, opposite};
 use nalgebra::Complex;

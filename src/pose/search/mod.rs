@@ -20,6 +20,7 @@
 //! | `matcher` | the score of a hypothesis, the best translation of a rotation |
 //! | `cloud`, `template` | the depth view as patches, and their appearance to the colour camera |
 //! | `target` | the colour view on the grid |
+//! | `values` | the values of a cell of the grid |
 //! | `contrast` | local contrast in place of colours, for varying albedo |
 //! | `score`, `correlate` | fit of a template to a target: at one translation exactly, at all translations at once |
 //! | `geometry` | from hypotheses to poses |
@@ -44,6 +45,7 @@ mod sweep;
 mod target;
 mod task_results;
 mod template;
+mod values;
 
 pub use coarse_search::Search;
 pub(crate) use coarse_search::{SearchFinding, SearchTask};

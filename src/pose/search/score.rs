@@ -14,9 +14,9 @@
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
-use super::contrast::WITH_RELIEF;
 use super::target::Target;
-use super::template::{PADDED, Products, Sums, Template, products, row_start};
+use super::template::Template;
+use super::values::{PADDED, Products, Sums, WITH_RELIEF, products, row_start};
 use crate::light::{HARMONICS, Light, basis};
 
 /// Variance e added to the balanced colours, whose first axis has variance one. A tilt by half the spacing of the rotations

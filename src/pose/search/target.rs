@@ -73,7 +73,7 @@ impl Target {
         let (cell, middle) = frame(view);
         let (mask, mut colour) = cells(view, side, cell, middle);
         if by_contrast {
-            GridContrast::new().of_image(&mask, &mut colour);
+            GridContrast::new(side).of_image(&mask, &mut colour);
         }
         let (mean, covariance) = mean_and_covariance(&mask, &colour);
         let balance = balance(&covariance)?;

@@ -10,7 +10,8 @@
 use nalgebra::Matrix3;
 
 use super::cloud::Cloud;
-use super::contrast::{GridContrast, RELIEF, WITH_RELIEF};
+use super::contrast::GridContrast;
+use super::values::{LANES, PADDED, Products, RELIEF, Sums, WITH_RELIEF, products, row_start};
 use crate::light::{HARMONICS, basis};
 
 /// Smallest cosine between a normal and the direction to the camera; more oblique patches are slivers on the grid.
@@ -18,27 +19,6 @@ const GRAZING: f32 = 0.1;
 /// A patch is hidden if it lies more than this many cells behind the nearest patch of its cell. The limit allows for the
 /// slope of a visible surface over a cell and its neighbours.
 const HIDDEN: f32 = 2.5;
-
-/// Number of values that are added and multiplied at once.
-const LANES: usize = 4;
-/// Largest number of a cell's values, rounded up to whole lanes.
-pub const PADDED: usize = WITH_RELIEF.next_multiple_of(LANES);
-
-/// Weight w, then w B_k for the harmonics after the constant one, then w times the regressors of the relief, or zeros.
-pub type Sums = [f32; PADDED];
-
-/// Start of a row of the lower triangle of products; a row has as many lanes as reach the diagonal.
-pub const fn row_start(row: usize) -> usize {
-    let lanes = row / LANES;
-    LANES * (lanes + 1) * (row - LANES * lanes + LANES * lanes / 2)
-}
-
-/// Number of products of two values, up to a number of values.
-pub const fn products(channels: usize) -> usize {
-    row_start(channels - 1) + LANES * channels.div_ceil(LANES)
-}
-/// w B_k B_l.
-pub type Products = [f32; products(WITH_RELIEF)];
 
 /// Projection of patches onto the grid, by a camera that looks along `ray` (x and y at z = 1) at the centre of the
 /// cloud.
@@ -76,7 +56,7 @@ impl Template {
     pub fn new(side: usize, cloud: &Cloud, by_contrast: bool) -> Self {
         Self {
             side,
-            contrast: by_contrast.then(GridContrast::new),
+            contrast: by_contrast.then(|| GridContrast::new(side)),
             sums: vec![[0.0; PADDED]; side * side],
             cells: Vec::with_capacity(side * side),
             products: Vec::with_capacity(side * side),
