@@ -23,10 +23,10 @@ const ROUGH_POINTS: usize = 400;
 const MOST_REGISTERED: usize = 4;
 /// An end that sees fewer than this share of the points has receded until its points hide each other, and does not count.
 const LEAST_VISIBLE: f64 = 0.5;
-/// Least score of an end that may be the answer, and how many times the score of silhouettes it has to be: neighbouring
-/// cells are not independent, so scores are too large by a factor. Set on pairs of a statue and on captures
-/// (docs/lab/thresholds.md).
+/// Least score of an end that may be the answer. Set on pairs of a statue and on captures (docs/lab/thresholds.md).
 const LEAST_SCORE: f64 = 5.0;
+/// How many times the score of silhouettes it has to be. Neighbouring cells are not independent, so that scores are too
+/// large by a factor. Set on the same data.
 const LEAST_RATIO: f64 = 3.0;
 /// Shares of the work of the search and of the rough registrations.
 const SEARCH_SHARE: f64 = 0.4;
