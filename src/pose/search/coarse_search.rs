@@ -91,12 +91,13 @@ impl Search {
     }
 
     /// A search behind a pinhole by local contrast, in which the depth map may show only a part of the object: the
-    /// distance follows from the size of the mask.
+    /// distance follows from the size of the mask. It does not use a known light.
     ///
     /// # Errors
     /// As [`new`](Self::new).
     pub(crate) fn for_parts(problem: &SearchProblem<'_>) -> Result<Self> {
-        let mut search = Self::with_grid(problem, ImageGrid::of_contrast(problem.image)?)?;
+        let problem = SearchProblem { light: None, ..*problem };
+        let mut search = Self::with_grid(&problem, ImageGrid::of_contrast(problem.image)?)?;
         search.matcher.place_by_area();
         search.sweep.seek_parts();
         search.swept = TaskResults::new(search.sweep.slices());
@@ -304,7 +305,8 @@ mod tests {
             image: &image,
             depth: &depth,
             normals: &depth.normals,
-            light: None,
+            // Not used, because it predicts colours and not their local contrast.
+            light: Some(&sample.light),
             scale: Some(1.0),
             unit_scale: 1.0,
             seed: 1,
