@@ -13,6 +13,7 @@ use super::values::{RELIEF, Sums};
 
 /// Sigma of the local means in cells. Set on pairs of a statue (docs/lab/thresholds.md).
 const MEANS: f64 = 2.0;
+
 /// The regressors of each depth pixel.
 pub fn relief(size: Size, normals: &Normals) -> Vec<[f32; RELIEF]> {
     let [fine, coarse] = curvatures(size, normals);
