@@ -25,9 +25,8 @@ const MOST_REGISTERED: usize = 4;
 const LEAST_VISIBLE: f64 = 0.5;
 /// Least score of an end that may be the answer. Set on pairs of a statue and on captures (docs/lab/thresholds.md).
 const LEAST_SCORE: f64 = 5.0;
-/// How many times the score of silhouettes it has to be. Neighbouring cells are not independent, so that scores are too
-/// large by a factor. Set on the same data.
-const LEAST_RATIO: f64 = 3.0;
+/// Largest noise of that end, as a share of the noise that the pose from silhouettes leaves. Set on the same data.
+const LARGEST_NOISE: f64 = 0.55;
 /// Shares of the work of the search and of the rough registrations.
 const SEARCH_SHARE: f64 = 0.4;
 const ROUGH_SHARE: f64 = 0.6;
@@ -37,8 +36,8 @@ pub struct SecondSearch {
     search: Search,
     /// Poses found before.
     known: Vec<Similarity>,
-    /// Score of the pose from silhouettes, zero without one.
-    score_of_silhouettes: f64,
+    /// Noise that the pose from silhouettes leaves, infinite without one.
+    noise_of_silhouettes: f64,
     stage: Stage,
 }
 
@@ -58,15 +57,15 @@ impl SecondSearch {
     /// `None` if the views allow no search.
     pub fn new(
         pair: &ViewPair,
-        photometric: &PhotometricRegistration,
+        photometric: &mut PhotometricRegistration,
         silhouettes: Option<Similarity>,
         plain: Option<Similarity>,
     ) -> Option<Self> {
-        let mut search = Search::for_parts(&problem(pair, photometric)).ok()?;
-        let score_of_silhouettes =
-            silhouettes.and_then(|pose| search.score_of(&pose)).map_or(0.0, |score| score.max(0.0));
+        let search = Search::for_parts(&problem(pair, photometric)).ok()?;
+        let judged = silhouettes.and_then(|pose| photometric.judge(pair, &pose));
+        let noise_of_silhouettes = judged.map_or(f64::INFINITY, |judged| judged.noise);
         let known = silhouettes.into_iter().chain(plain).collect();
-        Some(Self { search, known, score_of_silhouettes, stage: Stage::Search })
+        Some(Self { search, known, noise_of_silhouettes, stage: Stage::Search })
     }
 
     /// Runs one slice; returns the choice at the end.
@@ -115,11 +114,13 @@ impl SecondSearch {
     fn choice(&mut self) -> Choice {
         let Stage::Closely { optima, .. } = &mut self.stage else { return Choice::default() };
         let ranking = optima.ranked();
-        let score = ranking.best.as_ref().and_then(|best| self.search.score_of(&best.registered.pose));
-        match score.is_some_and(|score| score >= LEAST_SCORE.max(LEAST_RATIO * self.score_of_silhouettes)) {
-            true => Choice::of(ranking),
-            false => Choice::default(),
-        }
+        let is_better = ranking.best.as_ref().is_some_and(|best| {
+            let registered = &best.registered;
+            let score = self.search.score_of(&registered.pose);
+            score.is_some_and(|score| score >= LEAST_SCORE)
+                && registered.noise <= LARGEST_NOISE * self.noise_of_silhouettes
+        });
+        if is_better { Choice::of(ranking) } else { Choice::default() }
     }
 
     /// Share of the work done, and the current activity.

@@ -58,7 +58,7 @@ impl VaryingAlbedo {
                     return Progressed::Ongoing;
                 }
                 self.silhouettes = anywhere.best().map(Box::new);
-                match self.second_search(pair, photometric, halved.as_deref(), plain) {
+                match self.second_search(pair, photometric, halved, plain) {
                     Some(search) => {
                         self.step = Step::Search(Box::new(search));
                         return Progressed::Ongoing;
@@ -85,8 +85,8 @@ impl VaryingAlbedo {
     fn second_search(
         &self,
         pair: &ViewPair,
-        photometric: &PhotometricRegistration,
-        halved: Option<&HalvedPair>,
+        photometric: &mut PhotometricRegistration,
+        halved: Option<&mut HalvedPair>,
         plain: Option<&PhotometricReport>,
     ) -> Option<SecondSearch> {
         let area = pair.image.object().iter().filter(|&&inside| inside).count() as f64;
@@ -98,7 +98,7 @@ impl VaryingAlbedo {
         match halved {
             Some(halved) => {
                 let [silhouettes, plain] = [silhouettes, plain].map(|pose| pose.map(|pose| halved.pose_in(&pose)));
-                SecondSearch::new(&halved.pair, &halved.photometric, silhouettes, plain)
+                SecondSearch::new(&halved.pair, &mut halved.photometric, silhouettes, plain)
             }
             None => SecondSearch::new(pair, photometric, silhouettes, plain),
         }
