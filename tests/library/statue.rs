@@ -68,8 +68,8 @@ fn load(name: &str) -> Pair {
     }
 }
 
-/// The pose as the start of a run.
-fn told(pose: &Similarity) -> Start {
+/// A run that begins at this pose.
+fn initial(pose: &Similarity) -> Start {
     Start::Pose { rotation: pose.rotation, scale: None, translation: Some(pose.translation) }
 }
 
@@ -106,13 +106,13 @@ mod long {
                 ..pair.truth
             };
             for start in [pair.truth, off] {
-                let (degrees, across) = run(&pair, told(&start));
+                let (degrees, across) = run(&pair, initial(&start));
                 assert!(degrees < 2.0 && across < 0.005, "{name}: {degrees} degrees, {across} m");
             }
         }
     }
 
-    /// The colours of these views, compared without removal of local means, fit best at wrong poses.
+    /// If local means are not removed from the colours of these views, they fit best at wrong poses.
     #[test]
     #[ignore = "needs ../shared/data"]
     fn views_of_a_statue_are_found_by_local_contrast_without_an_initial_pose() {

@@ -5,7 +5,7 @@
 //! contrast, and the distance follows from the mask, of which the depth map may cover only a part. Its candidates are
 //! registered roughly; the best ends and the poses found before are registered with the terms of
 //! `pose/photometric/near.rs` and a wide prior. Ends are ranked by the score of the search plus their gain: the gain alone
-//! favours poses that see a part without contrast, and the score alone knows no detail finer than its cells.
+//! favours poses that see a part without contrast, and the score does not resolve details smaller than a cell.
 
 use crate::estimator::pair::ViewPair;
 use crate::estimator::photometric::{Attempt, CANDIDATE_POINTS, FIRST_LEVEL_NEAR, PhotometricRegistration};
@@ -25,7 +25,8 @@ const MOST_REGISTERED: usize = 4;
 const LEAST_VISIBLE: f64 = 0.5;
 /// Least score of an end that may be the answer. Set on pairs of a statue and on captures (docs/lab/thresholds.md).
 const LEAST_SCORE: f64 = 5.0;
-/// Largest noise of that end, as a share of the noise that the pose from silhouettes leaves. Set on the same data.
+/// Largest noise of that end, as a share of the noise that the pose from silhouettes leaves: its shading has to fit clearly
+/// better. Set on the same data and on a rendered bust (docs/lab/thresholds.md).
 const LARGEST_NOISE: f64 = 0.55;
 /// Shares of the work of the search and of the rough registrations.
 const SEARCH_SHARE: f64 = 0.4;

@@ -33,7 +33,7 @@ impl GridContrast {
     }
 
     /// Applies H to the sums of every cell of a template, which are weighted by the first one. Allocates nothing.
-    pub fn of_template(&mut self, sums: &mut [Sums], cells: &[u32]) {
+    pub fn apply_to_template(&mut self, sums: &mut [Sums], cells: &[u32]) {
         self.weights.fill(0.0);
         for &cell in cells {
             let (weight, sums) = (&mut self.weights[cell as usize], &mut sums[cell as usize]);
@@ -50,7 +50,7 @@ impl GridContrast {
     }
 
     /// Applies H to the colours of an image, weighted by its mask.
-    pub fn of_image(&mut self, mask: &[f32], colour: &mut [Vec<f32>; 3]) {
+    pub fn apply_to_image(&mut self, mask: &[f32], colour: &mut [Vec<f32>; 3]) {
         self.means.weigh(mask);
         let mut colours: Vec<[f32; 3]> =
             (0..mask.len()).map(|cell| [0, 1, 2].map(|k: usize| colour[k][cell])).collect();
@@ -88,7 +88,7 @@ mod tests {
             (0..4).for_each(|k| sums[cell as usize][k] = weight * values[k]);
         }
         let before = sums.clone();
-        GridContrast::new(SIDE).of_template(&mut sums, &cells);
+        GridContrast::new(SIDE).apply_to_template(&mut sums, &cells);
         let middle = 16 * SIDE + 16;
         let [weight, constant, slow, fast, ..] = sums[middle].map(|sum| sum / before[middle][0]);
         assert_eq!(weight, 1.0);
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn both_views_lose_the_same() {
+    fn local_means_of_both_views_are_the_same() {
         let cells = square();
         let (mut mask, mut sums) = (vec![0.0; SIDE * SIDE], vec![[0.0; PADDED]; SIDE * SIDE]);
         let mut colour = [(); 3].map(|()| vec![0.0; SIDE * SIDE]);
@@ -108,8 +108,8 @@ mod tests {
             sums[cell][..2].copy_from_slice(&[0.8, 0.8 * value]);
         }
         let mut contrast = GridContrast::new(SIDE);
-        contrast.of_template(&mut sums, &cells);
-        contrast.of_image(&mask, &mut colour);
+        contrast.apply_to_template(&mut sums, &cells);
+        contrast.apply_to_image(&mask, &mut colour);
         for cell in cells.iter().map(|&cell| cell as usize) {
             assert!((sums[cell][1] / sums[cell][0] - colour[1][cell]).abs() < 1e-5);
         }

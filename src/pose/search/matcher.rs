@@ -27,8 +27,7 @@ impl ImageGrid {
     /// # Errors
     /// [`Degenerate`](crate::ErrorKind::Degenerate) if all colours are the same.
     pub fn new(image: &ColourView) -> Result<Self> {
-        let mut fourier = Fourier::new();
-        Ok(Self { target: Target::new(image, SIDE, &mut fourier, false)?, fourier })
+        Self::with(image, false)
     }
 
     /// The grid of the image's local contrast.
@@ -36,8 +35,12 @@ impl ImageGrid {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn of_contrast(image: &ColourView) -> Result<Self> {
+        Self::with(image, true)
+    }
+
+    fn with(image: &ColourView, by_contrast: bool) -> Result<Self> {
         let mut fourier = Fourier::new();
-        Ok(Self { target: Target::new(image, SIDE, &mut fourier, true)?, fourier })
+        Ok(Self { target: Target::new(image, SIDE, &mut fourier, by_contrast)?, fourier })
     }
 }
 

@@ -3,7 +3,7 @@
 //! y = W (log S - mean), where W holds the principal axes of the object's colours, each divided by the root of its
 //! standard deviation. This is half-way between plain and whitened differences. Plain differences show hardly anything
 //! but brightness. In whitened differences the faint chromaticity of natural light counts as much as its brightness,
-//! but so does noise. With local contrast, H is applied to log S first.
+//! but so does noise. With local contrast, the local means of log S are removed first.
 //!
 //! Limits: the grid spans the mask. If the mask is the whole frame, a small object has few cells.
 
@@ -73,7 +73,7 @@ impl Target {
         let (cell, middle) = frame(view);
         let (mask, mut colour) = cells(view, side, cell, middle);
         if by_contrast {
-            GridContrast::new(side).of_image(&mask, &mut colour);
+            GridContrast::new(side).apply_to_image(&mask, &mut colour);
         }
         let (mean, covariance) = mean_and_covariance(&mask, &colour);
         let balance = balance(&covariance)?;

@@ -2,7 +2,7 @@
 //!
 //! Each patch that faces the camera and is not hidden spreads its projected area w over the four cells around it, with
 //! the nine harmonics of its rotated normal: a cell holds w and w B_k(n). Coverage is at most one. With local contrast,
-//! a cell also holds w times the regressors of the relief, and H is applied to all values.
+//! a cell also holds w times the regressors of the relief, and the local means of all values are removed.
 //!
 //! Limits: a patch is hidden if it lies behind the nearest patch of its cell or of the neighbouring cells by more than
 //! a tolerance, so thin structures close behind each other show through. Patches off the grid are not seen.
@@ -96,7 +96,7 @@ impl Template {
             self.visible += sums[0];
         }
         if let Some(contrast) = &mut self.contrast {
-            contrast.of_template(&mut self.sums, &self.cells);
+            contrast.apply_to_template(&mut self.sums, &self.cells);
         }
     }
 
