@@ -14,6 +14,8 @@ pub struct Decision {
     pub rivals: Option<Vec<Similarity>>,
     /// Where registrations of the same optimum ended. Their spread adds to the sigmas of a photometric registration.
     pub ends: Vec<Similarity>,
+    /// Whether local contrast chose the pose because the albedo varies, so that shading need not explain the colours.
+    pub by_contrast: bool,
 }
 
 /// The method that the pose rests on, with its result.
@@ -39,7 +41,7 @@ pub enum Staying {
 
 impl Decision {
     pub const fn of(by: Method) -> Self {
-        Self { by, rivals: None, ends: Vec::new() }
+        Self { by, rivals: None, ends: Vec::new(), by_contrast: false }
     }
 
     /// The pose, if it was registered.

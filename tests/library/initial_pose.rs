@@ -198,6 +198,17 @@ mod long {
         assert!(report.pose.degrees_to(&sample.pose) < 2.0 && off.norm() < 3.0, "{off} {report:?}");
     }
 
+    /// From over 20 degrees aside, occluding contours belong to different parts of the surface: silhouettes fit best off the
+    /// true pose.
+    #[test]
+    fn the_image_outweighs_silhouettes_that_agree() {
+        let rotation = Angles { alpha: -12.0, beta: -26.0, gamma: 4.0 }.rotation();
+        let sample = sampled(&SampleRequest { rotation, ..request("colourful") });
+        let report = run(&sample, Albedo::Dirt, Options::default());
+        let error = report.pose.degrees_to(&sample.pose);
+        assert!(error < 2.0, "{error} {report:?}");
+    }
+
     #[test]
     fn silhouettes_find_the_place_of_an_object_whose_rotation_alone_is_told() {
         let sample = perspective("window");

@@ -130,6 +130,7 @@ impl Estimator {
             unmoved: history.unmoved,
             is_whole_step: history.step_fraction >= 1.0 && history.improved,
             log_spread: pair.image.log_spread(),
+            by_contrast: self.stages.registration.is_by_contrast(),
             hollow: history.hollow.clone(),
             missing_mask: checks::missing_mask(pair),
             rivals: report.rivals.len() as u32,

@@ -30,6 +30,8 @@ pub struct Evidence {
     pub is_whole_step: bool,
     /// Standard deviation of log S over the object.
     pub log_spread: f64,
+    /// Whether local contrast chose the pose, so that shading need not explain the colours.
+    pub by_contrast: bool,
     /// Reasons of the input checks to distrust an answer: a hollow depth map, a missing mask.
     pub hollow: Option<Reason>,
     pub missing_mask: Option<Reason>,

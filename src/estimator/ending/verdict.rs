@@ -93,7 +93,7 @@ fn reason_for_distrust(evidence: &Evidence, method: Option<&Method>) -> Option<V
         Some(Method::Initial(Staying::ExplainsNothing)) => return Some((Status::Lost, Some(Reason::InitialPoseKept))),
         Some(Method::Silhouettes(found)) => return reason_to_doubt_silhouettes(found, evidence.tolerance).map(capped),
         Some(Method::Contrast(found)) => (reason_to_doubt_contrast(&found.report), Some(&found.report.uncertainty)),
-        Some(Method::Photometric(found)) => (reason_to_be_lost(found, evidence.log_spread), Some(&found.uncertainty)),
+        Some(Method::Photometric(found)) => (reason_to_be_lost(found, evidence), Some(&found.uncertainty)),
         None => (None, None),
     };
     if lost.is_some() {
@@ -102,8 +102,9 @@ fn reason_for_distrust(evidence: &Evidence, method: Option<&Method>) -> Option<V
     if let Some(hollow) = &evidence.hollow {
         return Some(capped(hollow.clone()));
     }
+    let uncertain = || certainty.and_then(|uncertainty| too_uncertain(uncertainty, evidence.tolerance));
     match evidence.rivals {
-        0 => certainty.and_then(|uncertainty| too_uncertain(uncertainty, evidence.tolerance)).map(capped),
+        0 => uncertain().or_else(|| reason_to_doubt_colours(evidence, method)).map(capped),
         count => Some(capped(Reason::Rivals { count, nearest_degrees: evidence.nearest_rival })),
     }
 }
@@ -127,7 +128,21 @@ fn too_uncertain(uncertainty: &Uncertainty, most: f64) -> Option<Reason> {
     (sigma.is_nan() || sigma > most).then_some(Reason::RotationUncertain { sigma_degrees: sigma, weakest })
 }
 
-fn reason_to_be_lost(found: &PhotometricReport, log_spread: f64) -> Option<Reason> {
+/// Colours that shading does not explain, if local contrast chose the pose: the albedo is known to vary, so that they only
+/// cap the status.
+fn reason_to_doubt_colours(evidence: &Evidence, method: Option<&Method>) -> Option<Reason> {
+    match method {
+        Some(Method::Photometric(found)) if evidence.by_contrast => unexplained(found, evidence.log_spread),
+        _ => None,
+    }
+}
+
+fn unexplained(found: &PhotometricReport, log_spread: f64) -> Option<Reason> {
+    let share = found.noise / log_spread;
+    (share.is_nan() || share > LARGEST_UNEXPLAINED).then_some(Reason::Unexplained { percent: 100.0 * share })
+}
+
+fn reason_to_be_lost(found: &PhotometricReport, evidence: &Evidence) -> Option<Reason> {
     let (sigma, weakest) = (found.uncertainty.largest_rotation(), found.uncertainty.weakest);
     if sigma.is_nan() || sigma > UNOBSERVABLE {
         return Some(Reason::NotObservable { weakest });
@@ -135,9 +150,8 @@ fn reason_to_be_lost(found: &PhotometricReport, log_spread: f64) -> Option<Reaso
     if let Some(reason) = too_uncertain(&found.uncertainty, LOST_SIGMA) {
         return Some(reason);
     }
-    let unexplained = found.noise / log_spread;
-    if unexplained.is_nan() || unexplained > LARGEST_UNEXPLAINED {
-        return Some(Reason::Unexplained { percent: 100.0 * unexplained });
+    if let Some(reason) = unexplained(found, evidence.log_spread).filter(|_| !evidence.by_contrast) {
+        return Some(reason);
     }
     (found.inliers < FEWEST_INLIERS).then_some(Reason::FewInliers { percent: 100.0 * found.inliers })
 }
@@ -165,6 +179,7 @@ mod tests {
         unmoved: 1,
         is_whole_step: true,
         log_spread: 1.0,
+        by_contrast: false,
         hollow: None,
         missing_mask: None,
         rivals: 0,
@@ -217,6 +232,7 @@ mod tests {
             unseen,
             cost: 0.1,
             discontinuities: 99,
+            independent: 40.0,
         }))
     }
 
@@ -396,6 +412,20 @@ mod tests {
             for method in [None, Some(photometric(0.1, 0.05, 0.9))] {
                 expect(name, verdict(&evidence, method.as_ref()), (status, reason.clone()));
             }
+        }
+    }
+
+    #[test]
+    fn unexplained_colours_are_a_doubt_if_local_contrast_chose_the_pose() {
+        let chosen = Evidence { by_contrast: true, ..SETTLED };
+        let unexplained = Some(Reason::Unexplained { percent: 40.0 });
+        let cases = [
+            (photometric(0.1, 0.4, 0.9), Some(Status::Ambiguous), unexplained),
+            (photometric(6.0, 0.4, 0.9), Some(Status::Lost), turned(6.0)),
+            (photometric(0.1, 0.05, 0.9), Some(Status::Converged), None),
+        ];
+        for (method, status, reason) in cases {
+            expect("by contrast", verdict(&chosen, Some(&method)), (status, reason));
         }
     }
 

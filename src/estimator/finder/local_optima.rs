@@ -63,7 +63,8 @@ pub struct LocalOptimum {
     /// Where the best registration that ended here began.
     pub origin: Origin,
     pub registered: RegisteredCandidate,
-    gain: f64,
+    /// Gain and score.
+    pub gain: f64,
     /// Number of registrations that ended here.
     support: u32,
     /// The end of each registration, and its noise.
@@ -140,9 +141,14 @@ impl LocalOptima {
         self.enter_scored(origin, registered, 0.0);
     }
 
+    /// Gain of a pose.
+    pub fn gain(&self, registered: &RegisteredCandidate) -> f64 {
+        registered.visible.powf(THIRD) * (self.image.spread / registered.noise).ln()
+    }
+
     /// Enters the end of a registration, to whose gain a score is added.
     pub fn enter_scored(&mut self, origin: Origin, registered: RegisteredCandidate, score: f64) {
-        let gain = registered.visible.powf(THIRD) * (self.image.spread / registered.noise).ln() + score;
+        let gain = self.gain(&registered) + score;
         if !gain.is_finite() {
             return;
         }

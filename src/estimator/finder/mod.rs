@@ -371,7 +371,7 @@ fn of_single_albedo(pair: &ViewPair, photometric: &mut PhotometricRegistration, 
     let Choice { best: Some(mut best), rivals, ends } = choice else { return Next::Nothing };
     photometric.complete_sigmas(pair, &mut best);
     best.uncertainty.add_spread(&best.pose, &ends);
-    Next::Decision(Decision { by: Method::Photometric(best), rivals: Some(rivals), ends })
+    Next::Decision(Decision { rivals: Some(rivals), ends, ..Decision::of(Method::Photometric(best)) })
 }
 
 impl Scope {

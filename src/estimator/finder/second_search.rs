@@ -4,8 +4,9 @@
 //! The first search compares colours and expects both cameras at about the same distance. This one compares local
 //! contrast, and the distance follows from the mask, of which the depth map may cover only a part. Its candidates are
 //! registered roughly; the best ends and the poses found before are registered with the terms of
-//! `pose/photometric/near.rs` and a wide prior. Ends are ranked by the score of the search plus their gain: the gain alone
-//! favours poses that see a part without contrast, and the score does not resolve details smaller than a cell.
+//! `pose/photometric/near.rs` and a wide prior. Ends are ranked by the score of the search plus their gain, which is the
+//! evidence of the image: the gain alone favours poses that see a part without contrast, and the score does not resolve
+//! details smaller than a cell.
 
 use crate::estimator::pair::ViewPair;
 use crate::estimator::photometric::{Attempt, CANDIDATE_POINTS, FIRST_LEVEL_NEAR, PhotometricRegistration};
@@ -23,11 +24,6 @@ const ROUGH_POINTS: usize = 400;
 const MOST_REGISTERED: usize = 4;
 /// An end that sees fewer than this share of the points has receded until its points hide each other, and does not count.
 const LEAST_VISIBLE: f64 = 0.5;
-/// Least score of an end that may be the answer. Set on pairs of a statue and on captures (docs/lab/thresholds.md).
-const LEAST_SCORE: f64 = 5.0;
-/// Largest noise of that end, as a share of the noise that the pose from silhouettes leaves: its shading has to fit clearly
-/// better. Set on the same data and on a rendered bust (docs/lab/thresholds.md).
-const LARGEST_NOISE: f64 = 0.55;
 /// Shares of the work of the search and of the rough registrations.
 const SEARCH_SHARE: f64 = 0.4;
 const ROUGH_SHARE: f64 = 0.6;
@@ -37,9 +33,17 @@ pub struct SecondSearch {
     search: Search,
     /// Poses found before.
     known: Vec<Similarity>,
-    /// Noise that the pose from silhouettes leaves, infinite without one.
-    noise_of_silhouettes: f64,
+    /// Evidence of the image for the pose from silhouettes, zero without that pose.
+    evidence_for_silhouettes: f64,
     stage: Stage,
+}
+
+/// Result of the second search.
+#[derive(Default)]
+pub struct Found {
+    pub choice: Choice,
+    /// Evidence of the image for the choice, less that for the pose from silhouettes: a logarithm of likelihoods.
+    pub lead: f64,
 }
 
 enum Stage {
@@ -62,21 +66,23 @@ impl SecondSearch {
         silhouettes: Option<Similarity>,
         plain: Option<Similarity>,
     ) -> Option<Self> {
-        let search = Search::for_parts(&problem(pair, photometric)).ok()?;
-        let judged = silhouettes.and_then(|pose| photometric.judge(pair, &pose));
-        let noise_of_silhouettes = judged.map_or(f64::INFINITY, |judged| judged.noise);
+        let mut search = Search::for_parts(&problem(pair, photometric)).ok()?;
+        let evidence_for_silhouettes = silhouettes.and_then(|pose| {
+            let judged = RegisteredCandidate::of(photometric.judge(pair, &pose)?);
+            Some(search.score_of(&pose)? + optima(pair, 0).gain(&judged))
+        });
         let known = silhouettes.into_iter().chain(plain).collect();
-        Some(Self { search, known, noise_of_silhouettes, stage: Stage::Search })
+        let evidence_for_silhouettes = evidence_for_silhouettes.unwrap_or(0.0);
+        Some(Self { search, known, evidence_for_silhouettes, stage: Stage::Search })
     }
 
-    /// Runs one slice; returns the choice at the end.
-    pub fn advance(&mut self, pair: &ViewPair, photometric: &mut PhotometricRegistration) -> Option<Choice> {
-        let optima = |most: usize| LocalOptima::new(most, pair.residuals_of_noise(0.0));
+    /// Runs one slice; returns the result at the end.
+    pub fn advance(&mut self, pair: &ViewPair, photometric: &mut PhotometricRegistration) -> Option<Found> {
         match &mut self.stage {
             Stage::Search => {
                 self.search.advance();
                 if self.search.is_done() {
-                    self.stage = Stage::Roughly(0, optima(self.search.candidates().len()));
+                    self.stage = Stage::Roughly(0, optima(pair, self.search.candidates().len()));
                 }
             }
             Stage::Roughly(next, ends) => {
@@ -87,13 +93,13 @@ impl SecondSearch {
                     *next += 1;
                     return None;
                 }
-                let ends = std::mem::replace(ends, optima(0));
+                let ends = std::mem::replace(ends, optima(pair, 0));
                 let mut starts = std::mem::take(&mut self.known);
                 starts.extend(ends.best_poses(MOST_REGISTERED));
-                self.stage = Stage::Closely { optima: optima(starts.len()), starts, is_begun: false };
+                self.stage = Stage::Closely { optima: optima(pair, starts.len()), starts, is_begun: false };
             }
             Stage::Closely { starts, is_begun, optima } => {
-                let Some(start) = starts.last() else { return Some(self.choice()) };
+                let Some(start) = starts.last() else { return Some(self.found()) };
                 if !*is_begun {
                     photometric.keep_near(aligned_prior(pair, *start, ANYWHERE_DEGREES));
                 }
@@ -111,17 +117,12 @@ impl SecondSearch {
         None
     }
 
-    /// The choice among the ends if the best one is better than silhouettes, otherwise none.
-    fn choice(&mut self) -> Choice {
-        let Stage::Closely { optima, .. } = &mut self.stage else { return Choice::default() };
+    /// The choice among the ends.
+    fn found(&mut self) -> Found {
+        let Stage::Closely { optima, .. } = &mut self.stage else { return Found::default() };
         let ranking = optima.ranked();
-        let is_better = ranking.best.as_ref().is_some_and(|best| {
-            let registered = &best.registered;
-            let score = self.search.score_of(&registered.pose);
-            score.is_some_and(|score| score >= LEAST_SCORE)
-                && registered.noise <= LARGEST_NOISE * self.noise_of_silhouettes
-        });
-        if is_better { Choice::of(ranking) } else { Choice::default() }
+        let evidence = ranking.best.as_ref().map_or(0.0, |best| best.gain);
+        Found { choice: Choice::of(ranking), lead: evidence - self.evidence_for_silhouettes }
     }
 
     /// Share of the work done, and the current activity.
@@ -138,6 +139,11 @@ impl SecondSearch {
             }
         }
     }
+}
+
+/// An empty list of ends.
+fn optima(pair: &ViewPair, most: usize) -> LocalOptima {
+    LocalOptima::new(most, pair.residuals_of_noise(0.0))
 }
 
 /// Enters the end of a registration with its score.

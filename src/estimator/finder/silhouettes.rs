@@ -76,6 +76,12 @@ impl Anywhere {
         self.starts.is_empty()
     }
 
+    /// The report on a given pose.
+    pub fn judge(&mut self, pair: &ViewPair, normals: &Normals, pose: &Similarity) -> SilhouetteReport {
+        let problem = SilhouetteProblem { image: &pair.image, depth: &pair.depth, normals, prior: self.prior };
+        self.registration.judge(&problem, pose)
+    }
+
     /// The best registration so far that constrains the pose.
     pub fn best(&mut self) -> Option<SilhouetteReport> {
         self.best.take()

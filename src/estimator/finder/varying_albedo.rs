@@ -1,22 +1,20 @@
 //! The pose behind a pinhole, if nothing is known about it and the albedo varies (docs/method/registration.md): from
-//! silhouettes, then from a second search.
+//! silhouettes, and from a second search. Silhouettes pull a depth map of a part over the whole object, and the second
+//! search errs where shading has little contrast, so that neither decides alone: at each of both ends, the evidence of the
+//! image and that of the silhouettes are added.
 
 use crate::estimator::decision::{Decision, Method};
 use crate::estimator::pair::ViewPair;
 use crate::estimator::photometric::PhotometricRegistration;
-use crate::pose::{PhotometricReport, SilhouetteReport};
+use crate::pose::{PhotometricReport, SilhouetteReport, Similarity};
 use crate::reason::Activity;
+use crate::view::Normals;
 
 use super::halved_pair::HalvedPair;
 use super::initial_pose::aligned_prior;
 use super::local_optima::Choice;
-use super::second_search::SecondSearch;
+use super::second_search::{Found, SecondSearch};
 use super::silhouettes::{ANYWHERE_DEGREES, Anywhere};
-
-/// Noise of the depth discontinuities about the silhouette, as a share of the object's size (root of its area in the image),
-/// up to which silhouettes agree, because the depth map shows the whole object. Set on pairs of a statue and on captures
-/// (docs/lab/thresholds.md).
-const LARGEST_MISFIT: f64 = 0.017;
 
 /// Result of a slice.
 pub enum Progressed {
@@ -27,21 +25,18 @@ pub enum Progressed {
 
 /// Silhouettes and second search in slices; owns its memory.
 pub struct VaryingAlbedo {
-    step: Step,
+    anywhere: Box<Anywhere>,
+    /// The second search, once silhouettes are done.
+    search: Option<Box<SecondSearch>>,
     /// The pose from silhouettes, if they constrain it.
     silhouettes: Option<Box<SilhouetteReport>>,
-}
-
-enum Step {
-    Silhouettes(Box<Anywhere>),
-    Search(Box<SecondSearch>),
 }
 
 impl VaryingAlbedo {
     /// `None` if silhouettes constrain nothing.
     pub fn new(pair: &ViewPair, photometric: &PhotometricRegistration) -> Option<Self> {
-        let step = Step::Silhouettes(Box::new(Anywhere::new(pair, photometric.normals())?));
-        Some(Self { step, silhouettes: None })
+        let anywhere = Box::new(Anywhere::new(pair, photometric.normals())?);
+        Some(Self { anywhere, search: None, silhouettes: None })
     }
 
     /// Runs one slice; `plain` is the best registration under a single albedo.
@@ -52,36 +47,31 @@ impl VaryingAlbedo {
         halved: Option<&mut HalvedPair>,
         plain: Option<&PhotometricReport>,
     ) -> Progressed {
-        let choice = match &mut self.step {
-            Step::Silhouettes(anywhere) => {
-                if !anywhere.advance(pair, photometric.normals()) {
-                    return Progressed::Ongoing;
-                }
-                self.silhouettes = anywhere.best().map(Box::new);
-                match self.second_search(pair, photometric, halved, plain) {
-                    Some(search) => {
-                        self.step = Step::Search(Box::new(search));
-                        return Progressed::Ongoing;
-                    }
-                    None => Choice::default(),
-                }
+        let Some(search) = &mut self.search else {
+            if !self.anywhere.advance(pair, photometric.normals()) {
+                return Progressed::Ongoing;
             }
-            Step::Search(search) => {
-                let choice = match halved {
-                    Some(halved) => {
-                        let choice = search.advance(&halved.pair, &mut halved.photometric);
-                        choice.map(|choice| halved.choice_out(choice))
-                    }
-                    None => search.advance(pair, photometric),
-                };
-                let Some(choice) = choice else { return Progressed::Ongoing };
-                choice
-            }
+            self.silhouettes = self.anywhere.best().map(Box::new);
+            self.search = self.second_search(pair, photometric, halved, plain).map(Box::new);
+            return match self.search {
+                Some(_) => Progressed::Ongoing,
+                None => Progressed::Done(self.decide(pair, photometric, Found::default())),
+            };
         };
-        Progressed::Done(self.decide(pair, photometric, choice))
+        let found = match halved {
+            Some(halved) => {
+                let found = search.advance(&halved.pair, &mut halved.photometric);
+                found.map(|found| Found { choice: halved.choice_out(found.choice), ..found })
+            }
+            None => search.advance(pair, photometric),
+        };
+        match found {
+            Some(found) => Progressed::Done(self.decide(pair, photometric, found)),
+            None => Progressed::Ongoing,
+        }
     }
 
-    /// The second search, unless silhouettes agree.
+    /// The second search, if the views allow one.
     fn second_search(
         &self,
         pair: &ViewPair,
@@ -89,10 +79,6 @@ impl VaryingAlbedo {
         halved: Option<&mut HalvedPair>,
         plain: Option<&PhotometricReport>,
     ) -> Option<SecondSearch> {
-        let area = pair.image.object().iter().filter(|&&inside| inside).count() as f64;
-        if self.silhouettes.as_ref().is_some_and(|found| found.noise <= LARGEST_MISFIT * area.sqrt()) {
-            return None;
-        }
         let silhouettes = self.silhouettes.as_ref().map(|found| found.pose);
         let plain = plain.map(|plain| plain.pose);
         match halved {
@@ -104,26 +90,30 @@ impl VaryingAlbedo {
         }
     }
 
-    /// The end of the second search, registered by all points, if it is more certain than silhouettes. These are then a
-    /// rival if they differ by more than the sigma. Otherwise silhouettes.
+    /// The end of the second search, registered by all points, if its evidence is at least that of silhouettes. These are
+    /// then a rival if they differ by more than the sigma. Otherwise silhouettes.
     fn decide(
         &mut self,
         pair: &ViewPair,
         photometric: &mut PhotometricRegistration,
-        Choice { best, mut rivals, ends }: Choice,
+        Found { choice: Choice { best, mut rivals, ends }, lead }: Found,
     ) -> Option<Decision> {
         let silhouettes = self.silhouettes.take();
         photometric.keep_near(None);
+        let best = best.filter(|best| {
+            let lag =
+                silhouettes.as_ref().map_or(0.0, |found| self.lag(pair, photometric.normals(), found, &best.pose));
+            lead >= lag
+        });
         if let Some(mut best) = best {
             let sampled = best.pose;
             photometric.keep_near(aligned_prior(pair, sampled, ANYWHERE_DEGREES));
-            let again = photometric.register_again(pair, &mut best, &sampled, &ends);
-            let sigma = best.uncertainty.largest_rotation();
-            let is_more_certain = |found: &SilhouetteReport| sigma <= found.uncertainty.largest_rotation();
-            if again.is_ok() && silhouettes.as_deref().is_none_or(is_more_certain) {
+            if photometric.register_again(pair, &mut best, &sampled, &ends).is_ok() {
+                let sigma = best.uncertainty.largest_rotation();
                 let other = silhouettes.map(|found| found.pose);
                 rivals.extend(other.filter(|pose| pose.degrees_to(&best.pose) > sigma));
-                return Some(Decision { by: Method::Photometric(best), rivals: Some(rivals), ends });
+                let by = Method::Photometric(best);
+                return Some(Decision { by, rivals: Some(rivals), ends, by_contrast: true });
             }
             photometric.keep_near(None);
         }
@@ -131,11 +121,18 @@ impl VaryingAlbedo {
         Some(Decision { rivals: Some(Vec::new()), ..Decision::of(by) })
     }
 
+    /// Evidence of the silhouettes for their own pose, less that for another one: the logarithm of the likelihoods of
+    /// independent Gaussian errors whose deviation is the noise.
+    fn lag(&mut self, pair: &ViewPair, normals: &Normals, found: &SilhouetteReport, pose: &Similarity) -> f64 {
+        let [own, other] = [&found.pose, pose].map(|pose| self.anywhere.judge(pair, normals, pose));
+        own.independent * (other.noise / own.noise).ln()
+    }
+
     /// Share of the work done, and the current activity.
     pub fn progress(&self) -> (f64, Activity) {
-        match &self.step {
-            Step::Silhouettes(_) => (0.0, Activity::ComparingSilhouettes),
-            Step::Search(search) => search.progress(),
+        match &self.search {
+            None => (0.0, Activity::ComparingSilhouettes),
+            Some(search) => search.progress(),
         }
     }
 }

@@ -108,6 +108,11 @@ impl RegistrationStage {
         self.decision.as_ref().map(|decision| &decision.by).filter(|by| !settled_by_surfaces(by))
     }
 
+    /// Whether local contrast chose the pose.
+    pub fn is_by_contrast(&self) -> bool {
+        self.decision.as_ref().is_some_and(|decision| decision.by_contrast)
+    }
+
     /// Result of the photometric registration, unless depth noise leaves pose and light to other stages.
     pub fn found_photometrically(&self) -> Option<&PhotometricReport> {
         self.decided_photometrically().filter(|_| !self.surfaces_settle_pose())

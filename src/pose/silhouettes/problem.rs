@@ -31,6 +31,8 @@ pub struct SilhouetteReport {
     pub cost: f64,
     /// Number of depth discontinuities.
     pub discontinuities: usize,
+    /// Number of their independent errors.
+    pub independent: f64,
 }
 
 impl SilhouetteProblem<'_> {

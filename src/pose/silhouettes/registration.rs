@@ -296,6 +296,7 @@ impl SilhouetteRegistration {
             unseen: share > UNSEEN,
             cost: self.sums(problem, &pose, bias, FINEST).cost,
             discontinuities: self.discontinuities.found.len(),
+            independent,
             pose,
             noise,
         }

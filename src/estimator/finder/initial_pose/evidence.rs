@@ -73,7 +73,7 @@ impl InitialEvidence {
         let sampled = best.pose;
         photometric.register_again(pair, &mut best, &sampled, &ends)?;
         Ok(match region.holds(pair, &best.pose) {
-            true => Decision { by: Method::Photometric(best), rivals: Some(rivals), ends },
+            true => Decision { rivals: Some(rivals), ends, ..Decision::of(Method::Photometric(best)) },
             false => Decision::of(stay(pair, photometric, region)),
         })
     }
