@@ -4,7 +4,8 @@ import assert from "node:assert/strict";
 import { before, describe, test } from "node:test";
 import init, { Estimator, samplePair, suggestMask } from "../../pkg/index.js";
 import { GALLERY } from "../../protocols/gallery.mjs";
-import { degreesBetween } from "../../protocols/rotations.mjs";
+import { middleOf, moved } from "../../protocols/perspective.mjs";
+import { aboutAxis, degreesBetween, product } from "../../protocols/rotations.mjs";
 import { LONG } from "./long.mjs";
 import { BimodalError } from "./support.mjs";
 
@@ -42,6 +43,31 @@ describe("the gallery", () => {
 
   for (const card of GALLERY)
     test(`${card.name} ends as its card says`, LONG, async () => isAsSaid(await endOf(card.kind), card));
+
+  test(
+    "a bowl whose colours fit better elsewhere is placed by its silhouette, from an inaccurate pose",
+    LONG,
+    async () => {
+      const { image, depth, pose } = await samplePair("bowl");
+      const middle = middleOf(depth);
+      const rotation = product(pose.rotation, aboutAxis([0, 0.6, 0.8], 3));
+      const start = {
+        scale: 1,
+        rotation,
+        translation: [0, 1, 2].map((k) => pose.translation[k] + [0.015, -0.01, 0.008][k]),
+      };
+      const estimator = new Estimator(image, depth, { start });
+      await estimator.run();
+      const found = estimator.report.pose;
+      estimator.free();
+      const across = (end) => {
+        const [there, here] = [moved(end, middle), moved(pose, middle)];
+        return 1000 * Math.hypot(there[0] - here[0], there[1] - here[1]);
+      };
+      assert.ok(across(start) > 30, `${across(start)} mm`);
+      assert.ok(across(found) < 15, `${across(found)} mm`);
+    },
+  );
 
   test("levels are those of the ends: what converges is near the truth, and what fails is far off and not converged", () => {
     for (const { kind, level, ends } of GALLERY) {

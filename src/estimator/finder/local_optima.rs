@@ -39,6 +39,11 @@ const RIVAL_VISIBLE: f64 = 0.5;
 /// Largest number of rivals in a report.
 const MOST_RIVALS: usize = 5;
 
+/// Gain of a pose that sees this many points and leaves this noise, in an image of this spread.
+pub fn gain(spread: f64, visible: f64, noise: f64) -> f64 {
+    visible.powf(THIRD) * (spread / noise).ln()
+}
+
 /// What distinguishes one registration from another.
 #[derive(Clone, Debug)]
 pub struct RegisteredCandidate {
@@ -141,14 +146,9 @@ impl LocalOptima {
         self.enter_scored(origin, registered, 0.0);
     }
 
-    /// Gain of a pose.
-    pub fn gain(&self, registered: &RegisteredCandidate) -> f64 {
-        registered.visible.powf(THIRD) * (self.image.spread / registered.noise).ln()
-    }
-
     /// Enters the end of a registration, to whose gain a score is added.
     pub fn enter_scored(&mut self, origin: Origin, registered: RegisteredCandidate, score: f64) {
-        let gain = self.gain(&registered) + score;
+        let gain = gain(self.image.spread, registered.visible, registered.noise) + score;
         if !gain.is_finite() {
             return;
         }

@@ -15,7 +15,7 @@ use crate::reason::Activity;
 
 use super::candidates::problem;
 use super::initial_pose::aligned_prior;
-use super::local_optima::{Choice, LocalOptima, Origin, RegisteredCandidate};
+use super::local_optima::{Choice, LocalOptima, Origin, RegisteredCandidate, gain};
 use super::silhouettes::ANYWHERE_DEGREES;
 
 /// Largest number of points of the rough registrations.
@@ -68,8 +68,8 @@ impl SecondSearch {
     ) -> Option<Self> {
         let mut search = Search::for_parts(&problem(pair, photometric)).ok()?;
         let evidence_for_silhouettes = silhouettes.and_then(|pose| {
-            let judged = RegisteredCandidate::of(photometric.judge(pair, &pose)?);
-            Some(search.score_of(&pose)? + optima(pair, 0).gain(&judged))
+            let judged = photometric.judge(pair, &pose)?;
+            Some(search.score_of(&pose)? + gain(pair.image.log_spread(), judged.visible as f64, judged.noise))
         });
         let known = silhouettes.into_iter().chain(plain).collect();
         let evidence_for_silhouettes = evidence_for_silhouettes.unwrap_or(0.0);
@@ -78,11 +78,12 @@ impl SecondSearch {
 
     /// Runs one slice; returns the result at the end.
     pub fn advance(&mut self, pair: &ViewPair, photometric: &mut PhotometricRegistration) -> Option<Found> {
+        let optima = |most: usize| LocalOptima::new(most, pair.residuals_of_noise(0.0));
         match &mut self.stage {
             Stage::Search => {
                 self.search.advance();
                 if self.search.is_done() {
-                    self.stage = Stage::Roughly(0, optima(pair, self.search.candidates().len()));
+                    self.stage = Stage::Roughly(0, optima(self.search.candidates().len()));
                 }
             }
             Stage::Roughly(next, ends) => {
@@ -93,10 +94,10 @@ impl SecondSearch {
                     *next += 1;
                     return None;
                 }
-                let ends = std::mem::replace(ends, optima(pair, 0));
+                let ends = std::mem::replace(ends, optima(0));
                 let mut starts = std::mem::take(&mut self.known);
                 starts.extend(ends.best_poses(MOST_REGISTERED));
-                self.stage = Stage::Closely { optima: optima(pair, starts.len()), starts, is_begun: false };
+                self.stage = Stage::Closely { optima: optima(starts.len()), starts, is_begun: false };
             }
             Stage::Closely { starts, is_begun, optima } => {
                 let Some(start) = starts.last() else { return Some(self.found()) };
@@ -139,11 +140,6 @@ impl SecondSearch {
             }
         }
     }
-}
-
-/// An empty list of ends.
-fn optima(pair: &ViewPair, most: usize) -> LocalOptima {
-    LocalOptima::new(most, pair.residuals_of_noise(0.0))
 }
 
 /// Enters the end of a registration with its score.

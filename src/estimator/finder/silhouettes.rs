@@ -35,6 +35,30 @@ pub fn near(pair: &ViewPair, normals: &Normals, initial: PosePrior) -> Option<Si
     Some(found).filter(|found| is_seen(found) && found.cost < staying)
 }
 
+/// Evidence of the silhouettes for the pose found from them, less that for another one.
+pub fn lead_near(
+    pair: &ViewPair,
+    normals: &Normals,
+    initial: PosePrior,
+    found: &SilhouetteReport,
+    pose: &Similarity,
+) -> f64 {
+    let problem = SilhouetteProblem { image: &pair.image, depth: &pair.depth, normals, prior: initial };
+    lead(&mut SilhouetteRegistration::new(&problem), &problem, found, pose)
+}
+
+/// The logarithm of the likelihoods of independent Gaussian errors whose deviation is the noise. Both poses are judged
+/// without an edge bias.
+fn lead(
+    registration: &mut SilhouetteRegistration,
+    problem: &SilhouetteProblem<'_>,
+    found: &SilhouetteReport,
+    pose: &Similarity,
+) -> f64 {
+    let [own, other] = [&found.pose, pose].map(|pose| registration.judge(problem, pose));
+    own.independent * (other.noise / own.noise).ln()
+}
+
 /// Whether silhouettes are tried if nothing is known about the pose; `found` is the best pose under a single albedo.
 pub fn are_called_for(pair: &ViewPair, found: Option<&PhotometricReport>) -> bool {
     pair.options.registration == Registration::Joint && found.is_none_or(|found| has_varying_albedo(pair, found))
@@ -76,10 +100,10 @@ impl Anywhere {
         self.starts.is_empty()
     }
 
-    /// The report on a given pose.
-    pub fn judge(&mut self, pair: &ViewPair, normals: &Normals, pose: &Similarity) -> SilhouetteReport {
+    /// As [`lead_near`], with the prior of this search.
+    pub fn lead(&mut self, pair: &ViewPair, normals: &Normals, found: &SilhouetteReport, pose: &Similarity) -> f64 {
         let problem = SilhouetteProblem { image: &pair.image, depth: &pair.depth, normals, prior: self.prior };
-        self.registration.judge(&problem, pose)
+        lead(&mut self.registration, &problem, found, pose)
     }
 
     /// The best registration so far that constrains the pose.

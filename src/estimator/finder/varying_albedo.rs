@@ -6,9 +6,8 @@
 use crate::estimator::decision::{Decision, Method};
 use crate::estimator::pair::ViewPair;
 use crate::estimator::photometric::PhotometricRegistration;
-use crate::pose::{PhotometricReport, SilhouetteReport, Similarity};
+use crate::pose::{PhotometricReport, SilhouetteReport};
 use crate::reason::Activity;
-use crate::view::Normals;
 
 use super::halved_pair::HalvedPair;
 use super::initial_pose::aligned_prior;
@@ -100,12 +99,11 @@ impl VaryingAlbedo {
     ) -> Option<Decision> {
         let silhouettes = self.silhouettes.take();
         photometric.keep_near(None);
-        let best = best.filter(|best| {
-            let lag =
-                silhouettes.as_ref().map_or(0.0, |found| self.lag(pair, photometric.normals(), found, &best.pose));
-            lead >= lag
-        });
-        if let Some(mut best) = best {
+        let mut is_evident = |best: &PhotometricReport| {
+            let of_silhouettes = |found| self.anywhere.lead(pair, photometric.normals(), found, &best.pose);
+            lead >= silhouettes.as_deref().map_or(0.0, of_silhouettes)
+        };
+        if let Some(mut best) = best.filter(|best| is_evident(best)) {
             let sampled = best.pose;
             photometric.keep_near(aligned_prior(pair, sampled, ANYWHERE_DEGREES));
             if photometric.register_again(pair, &mut best, &sampled, &ends).is_ok() {
@@ -119,13 +117,6 @@ impl VaryingAlbedo {
         }
         let by = Method::Silhouettes(silhouettes?);
         Some(Decision { rivals: Some(Vec::new()), ..Decision::of(by) })
-    }
-
-    /// Evidence of the silhouettes for their own pose, less that for another one: the logarithm of the likelihoods of
-    /// independent Gaussian errors whose deviation is the noise.
-    fn lag(&mut self, pair: &ViewPair, normals: &Normals, found: &SilhouetteReport, pose: &Similarity) -> f64 {
-        let [own, other] = [&found.pose, pose].map(|pose| self.anywhere.judge(pair, normals, pose));
-        own.independent * (other.noise / own.noise).ln()
     }
 
     /// Share of the work done, and the current activity.

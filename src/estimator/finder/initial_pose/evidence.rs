@@ -4,7 +4,7 @@ use super::registrations::InitialRegistrations;
 use super::trust_region::TrustRegion;
 use crate::error::Result;
 use crate::estimator::decision::{Decision, Method, Staying};
-use crate::estimator::finder::local_optima::Choice;
+use crate::estimator::finder::local_optima::{self, Choice};
 use crate::estimator::finder::{local_contrast, silhouettes};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
@@ -57,13 +57,8 @@ impl InitialEvidence {
             return Ok(found);
         }
         let silhouettes = self.silhouettes.take();
-        // If the albedo varies, a photometric pose counts less than silhouettes when it hardly fits or is less certain.
-        let is_trusted = |best: &PhotometricReport| match &silhouettes {
-            Some(_) if !silhouettes::has_varying_albedo(pair, best) => true,
-            Some(found) => {
-                !pair.residuals(best).is_unexplained()
-                    && best.uncertainty.largest_rotation() <= found.uncertainty.largest_rotation()
-            }
+        let mut is_trusted = |best: &PhotometricReport| match silhouettes.as_deref() {
+            Some(found) => self.is_better(pair, photometric, best, found),
             None => true,
         };
         let Some(mut best) = best.filter(|best| is_trusted(best)) else {
@@ -76,6 +71,29 @@ impl InitialEvidence {
             true => Decision { rivals: Some(rivals), ends, ..Decision::of(Method::Photometric(best)) },
             false => Decision::of(stay(pair, photometric, region)),
         })
+    }
+
+    /// Whether a photometric pose counts more than silhouettes. Where the albedo varies, it has to explain the colours and be
+    /// more certain. Otherwise its evidence has to be at least theirs, because a wrong pose can explain the colours of a
+    /// flat object.
+    fn is_better(
+        &self,
+        pair: &ViewPair,
+        photometric: &mut PhotometricRegistration,
+        best: &PhotometricReport,
+        found: &SilhouetteReport,
+    ) -> bool {
+        if silhouettes::has_varying_albedo(pair, best) {
+            let is_more_certain = best.uncertainty.largest_rotation() <= found.uncertainty.largest_rotation();
+            return is_more_certain && !pair.residuals(best).is_unexplained();
+        }
+        let gain = |report: &PhotometricReport| {
+            local_optima::gain(pair.image.log_spread(), report.visible as f64, report.noise)
+        };
+        let lead = gain(best) - photometric.judge(pair, &found.pose).map_or(0.0, |judged| gain(&judged));
+        let normals = photometric.normals();
+        let of_silhouettes = |prior| silhouettes::lead_near(pair, normals, prior, found, &best.pose);
+        lead >= self.region.prior(pair).map_or(0.0, of_silhouettes)
     }
 }
 
