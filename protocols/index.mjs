@@ -4,6 +4,7 @@ import { cameras } from "./cameras.mjs";
 import { conditions } from "./conditions.mjs";
 import { honesty } from "./honesty.mjs";
 import { painted } from "./painted.mjs";
+import { parts } from "./parts.mjs";
 import { pinhole, rgbd } from "./perspectives.mjs";
 import { perturbation } from "./perturbation.mjs";
 import { figure6, table1, table2A, table2B } from "./poses.mjs";
@@ -28,6 +29,7 @@ export const TABLES = [
     rgbd,
     statue,
     pinhole,
+    parts,
     random,
     cameras,
     painted,

@@ -18,10 +18,10 @@ function direction({ gaussian }) {
   return times(vector, 1 / Math.hypot(...vector));
 }
 
-/** The pose that rotates about a point and leaves that point in place. */
-const about = (middle, rotation) => ({
+/** The pose that rotates about a point of the depth camera's frame and takes it to a place, or leaves it in place. */
+const about = (middle, rotation, place = middle) => ({
   rotation,
-  translation: middle.map((value, axis) => value - turn(rotation, middle)[axis]),
+  translation: place.map((value, axis) => value - turn(rotation, middle)[axis]),
 });
 
 /** An initial pose that is rotated about the depth camera and shifted; the seed follows from the cell's name. */
@@ -46,7 +46,7 @@ function offsets(pose, truth, middle) {
   };
 }
 
-function run(cell, api, { image, depth, truth }) {
+export function run(cell, api, { image, depth, truth }) {
   const middle = middleOf(depth);
   const start = cell.off ? startOff(truth, cell.off, cell.id) : null;
   const options = optionsOf({ ...cell.options, ...(start ? { start } : {}) }, {});
@@ -111,9 +111,9 @@ function misstated(camera, [least, most], dice) {
   return dice.below(2) === 1 ? [other, camera] : [camera, other];
 }
 
-export async function measurePinhole(cell, api, library) {
-  const { size, height, distance, noise, depthNoise, kit } = cell;
-  const dice = chance(cell.seed);
+/** A rendered pair and its pose. With `nearer`, the depth camera is nearer by a factor in that range. */
+export function drawPair(cell, api, library, dice) {
+  const { size, height, distance, noise, depthNoise, kit, nearer } = cell;
   const mesh = meshOfSurface(api, library, kit.surfaces[dice.below(kit.surfaces.length)], height);
   const light = library.gaussian
     ? drawGaussian(library.gaussian, dice)
@@ -125,7 +125,8 @@ export async function measurePinhole(cell, api, library) {
   const camera = { fx: focal, fy: focal, cx: (size.width - 1) / 2, cy: (size.height - 1) / 2 };
   const place = [0, 0, distance];
   const view = seen(mesh, camera, size, { rotation: IDENTITY, translation: place });
-  const other = seen(mesh, camera, size, { rotation: transpose(rotation), translation: place });
+  const placeOfDepth = nearer ? [0, 0, distance / dice.uniform(...nearer)] : place;
+  const other = seen(mesh, camera, size, { rotation: transpose(rotation), translation: placeOfDepth });
   const isSeen = (index) => view.depth[index] > 0 && view.normals[3 * index + 2] < 0;
   const colours = new Float32Array(3 * view.depth.length);
   for (let index = 0; index < view.depth.length; index++) {
@@ -139,9 +140,11 @@ export async function measurePinhole(cell, api, library) {
   const mask = Uint8Array.from(view.depth, (_, index) => Number(isSeen(index)));
   const data = other.depth.map((z) => z + depthNoise * dice.gaussian());
   const [said, saidOfDepth] = cell.focalOff ? misstated(camera, cell.focalOff, dice) : [camera, camera];
-  return run(cell, api, {
+  return {
     image: { ...size, data: colours, mask, camera: said },
     depth: { ...size, data, camera: saidOfDepth, mask: Uint8Array.from(other.depth, (z) => Number(z > 0)) },
-    truth: { scale: 1, ...about(place, rotation) },
-  });
+    truth: { scale: 1, ...about(placeOfDepth, rotation, place) },
+  };
 }
+
+export const measurePinhole = (cell, api, library) => run(cell, api, drawPair(cell, api, library, chance(cell.seed)));

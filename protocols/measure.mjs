@@ -5,6 +5,7 @@ import { requestOf } from "./scenes.mjs";
 import { measureCamera } from "./cameras.mjs";
 import { measurePerturbed } from "./measure-perturbed.mjs";
 import { measurePainted } from "./painted.mjs";
+import { measureParts } from "./parts.mjs";
 import { measureSoft } from "./soft.mjs";
 import { measureHonesty } from "./honesty.mjs";
 import { measureStress } from "./stress.mjs";
@@ -72,6 +73,7 @@ const KINDS = {
   photograph: measurePhotograph,
   capture: measureCapture,
   pinhole: measurePinhole,
+  parts: measureParts,
   statue: measureStatue,
   albedo: measureAlbedo,
   camera: measureCamera,

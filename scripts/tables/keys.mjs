@@ -50,6 +50,10 @@ const KEYS = {
     ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
     ...["coverage1", "coverage3"],
   ],
+  parts: [
+    ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
+    ...["coverage1", "coverage3", "medianOfAll", "kinds"],
+  ],
   soft: [
     ...["cases", "found", "ambiguousOrLost", "confidentlyWrong", "flaggedThoughFound", "medianDegrees"],
     ...["coverage1", "coverage3", "medianOfAll", "kinds"],

@@ -341,6 +341,7 @@ const SHOWS = {
     rgbd,
     statue,
     pinhole,
+    parts: byKind,
     random,
     cameras: byKind,
     painted: random,
