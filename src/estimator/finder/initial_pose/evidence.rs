@@ -44,7 +44,7 @@ impl InitialEvidence {
         &mut self,
         pair: &ViewPair,
         photometric: &mut PhotometricRegistration,
-        Choice { best, rivals, ends }: Choice,
+        Choice { best, mut rivals, ends }: Choice,
         found: Option<Decision>,
     ) -> Result<Decision> {
         let region = &self.region;
@@ -57,36 +57,42 @@ impl InitialEvidence {
             return Ok(found);
         }
         let silhouettes = self.silhouettes.take();
-        let mut is_trusted = |best: &PhotometricReport| match silhouettes.as_deref() {
-            Some(found) => self.is_better(pair, photometric, best, found),
+        // If the albedo varies, a photometric pose counts less than silhouettes when it hardly fits or is less certain.
+        let is_trusted = |best: &PhotometricReport| match &silhouettes {
+            Some(_) if !silhouettes::has_varying_albedo(pair, best) => true,
+            Some(found) => {
+                !pair.residuals(best).is_unexplained()
+                    && best.uncertainty.largest_rotation() <= found.uncertainty.largest_rotation()
+            }
             None => true,
         };
         let Some(mut best) = best.filter(|best| is_trusted(best)) else {
             return Ok(Decision::of(silhouettes.map_or_else(|| stay(pair, photometric, region), Method::Silhouettes)));
         };
+        // A single albedo explains the colours at a wrong pose, too, if the object is flat. Silhouettes then fit far better
+        // elsewhere.
+        if !silhouettes::has_varying_albedo(pair, &best) {
+            let other = silhouettes.as_ref().filter(|found| !self.is_evident(pair, photometric, &best, found));
+            rivals.extend(other.map(|found| found.pose));
+        }
         // Candidates are registered on a sample of the points; all points follow.
         let sampled = best.pose;
         photometric.register_again(pair, &mut best, &sampled, &ends)?;
-        Ok(match region.holds(pair, &best.pose) {
-            true => Decision { rivals: Some(rivals), ends, ..Decision::of(Method::Photometric(best)) },
-            false => Decision::of(stay(pair, photometric, region)),
-        })
+        if region.holds(pair, &best.pose) {
+            return Ok(Decision { rivals: Some(rivals), ends, ..Decision::of(Method::Photometric(best)) });
+        }
+        let near = silhouettes.filter(|found| region.holds(pair, &found.pose));
+        Ok(Decision::of(near.map_or_else(|| stay(pair, photometric, region), Method::Silhouettes)))
     }
 
-    /// Whether a photometric pose counts more than silhouettes. Where the albedo varies, it has to explain the colours and be
-    /// more certain. Otherwise its evidence has to be at least theirs, because a wrong pose can explain the colours of a
-    /// flat object.
-    fn is_better(
+    /// Whether the evidence for a photometric pose is at least that for the pose from silhouettes.
+    fn is_evident(
         &self,
         pair: &ViewPair,
         photometric: &mut PhotometricRegistration,
         best: &PhotometricReport,
         found: &SilhouetteReport,
     ) -> bool {
-        if silhouettes::has_varying_albedo(pair, best) {
-            let is_more_certain = best.uncertainty.largest_rotation() <= found.uncertainty.largest_rotation();
-            return is_more_certain && !pair.residuals(best).is_unexplained();
-        }
         let gain = |report: &PhotometricReport| {
             local_optima::gain(pair.image.log_spread(), report.visible as f64, report.noise)
         };
