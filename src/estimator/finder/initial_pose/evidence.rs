@@ -69,9 +69,9 @@ impl InitialEvidence {
         let Some(mut best) = best.filter(|best| is_trusted(best)) else {
             return Ok(Decision::of(silhouettes.map_or_else(|| stay(pair, photometric, region), Method::Silhouettes)));
         };
-        // A single albedo explains the colours at a wrong pose, too, if the object is flat. Silhouettes then fit far better
-        // elsewhere.
-        if !silhouettes::has_varying_albedo(pair, &best) {
+        // A single albedo explains the colours at a wrong pose, too, if the object is flat, but leaves more than noise. Silhouettes
+        // then fit far better elsewhere.
+        if !silhouettes::has_varying_albedo(pair, &best) && !pair.residuals(&best).is_noise() {
             let other = silhouettes.as_ref().filter(|found| !self.is_evident(pair, photometric, &best, found));
             rivals.extend(other.map(|found| found.pose));
         }
