@@ -2,7 +2,7 @@
 import { FROM_ANYWHERE, NOISE } from "./scenes.mjs";
 import { aboutAxis, anglesOf, degreesBetween, product } from "./rotations.mjs";
 import { chance, drawGaussian } from "./numbers.mjs";
-import { randomRow } from "./counts.mjs";
+import { measuredRows, randomRow } from "./counts.mjs";
 
 export const SCENES = 300;
 const QUICK_SCENES = 12;
@@ -60,7 +60,7 @@ export const random = {
   name: "random",
   title: "Random scenes: any surface, light, pose and scale, nothing known",
   cells: (kit, quick) => seeds(quick ? QUICK_SCENES : SCENES).map((seed) => randomCell(kit, seed)),
-  rows: (results) => randomRow(results.map(({ cell, result }) => ({ ...cell.row, ...result }))),
+  rows: (results) => randomRow(measuredRows(results)),
 };
 
 const EXPOSURES = [0.1, 10];

@@ -1,7 +1,7 @@
 // Renders with the flaws of a camera's lens and sensor: vignetting, noise that grows with the signal, one colour per pixel.
 import { drawScene } from "./anywhere.mjs";
 import { chance } from "./numbers.mjs";
-import { randomRow } from "./counts.mjs";
+import { measuredRows, rowByKind } from "./counts.mjs";
 import { FROM_ANYWHERE, requestOf } from "./scenes.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 
@@ -69,15 +69,7 @@ export const cameras = {
       options: FROM_ANYWHERE,
     })),
   /** One row for all cells, and one for each kind. */
-  rows: (results) => {
-    const rows = results.map(({ cell, result }) => ({ ...cell.row, ...result }));
-    const kinds = NAMES.map((flaw) => ({
-      kind: flaw,
-      ...randomRow(rows.filter((row) => row.flaw === flaw)),
-      scenes: undefined,
-    }));
-    return { ...randomRow(rows), kinds };
-  },
+  rows: (results) => rowByKind(measuredRows(results), [{ key: "flaw", values: NAMES }]),
 };
 
 export async function measureCamera(cell, api, library) {

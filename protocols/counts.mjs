@@ -43,3 +43,14 @@ export function randomRow(rows) {
     scenes: rows,
   };
 }
+
+/** The rows of the results: each cell's own keys, and the measured values. */
+export const measuredRows = (results) => results.map(({ cell, result }) => ({ ...cell.row, ...result }));
+
+/** The row of random scenes, with the median error of all, found or not, and a row for each value of a key. */
+export function rowByKind(rows, groups) {
+  const kinds = groups.flatMap(({ key, values }) =>
+    values.map((kind) => ({ ...randomRow(rows.filter((row) => row[key] === kind)), kind, scenes: undefined })),
+  );
+  return { ...randomRow(rows), medianOfAll: median(rows.map(({ degrees }) => degrees)), kinds };
+}

@@ -1,7 +1,7 @@
 // Inputs that are worse than they claim, or not what they claim, to test whether the report notices. Random scenes, nothing known.
 import { drawScene } from "./anywhere.mjs";
 import { chance } from "./numbers.mjs";
-import { randomRow } from "./counts.mjs";
+import { measuredRows, rowByKind } from "./counts.mjs";
 import { encoded, throughJpeg } from "./jpeg.mjs";
 import { measurePinhole } from "./measure-perspective.mjs";
 import { PINHOLE } from "./perspectives.mjs";
@@ -205,15 +205,7 @@ export const honesty = {
       })),
     ),
   /** One row for all cells, and one for each kind. */
-  rows: (results) => {
-    const rows = results.map(({ cell, result }) => ({ ...cell.row, ...result }));
-    const kinds = NAMES.map((kind) => ({
-      ...randomRow(rows.filter((row) => row.kind === kind)),
-      kind,
-      scenes: undefined,
-    }));
-    return { ...randomRow(rows), kinds };
-  },
+  rows: (results) => rowByKind(measuredRows(results), [{ key: "kind", values: NAMES }]),
 };
 
 export async function measureHonesty(cell, api, library) {

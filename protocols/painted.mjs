@@ -1,7 +1,7 @@
 // Renders of objects with varying albedo: two to eight colours in stripes or patches, nothing known.
 import { drawScene } from "./anywhere.mjs";
 import { chance } from "./numbers.mjs";
-import { randomRow } from "./counts.mjs";
+import { measuredRows, randomRow } from "./counts.mjs";
 import { FROM_ANYWHERE, requestOf } from "./scenes.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 
@@ -27,7 +27,7 @@ export const painted = {
       seed: index + 1,
       options: FROM_ANYWHERE,
     })),
-  rows: (results) => randomRow(results.map(({ cell, result }) => ({ ...cell.row, ...result }))),
+  rows: (results) => randomRow(measuredRows(results)),
 };
 
 /** Multiplies linear RGB colours by varying albedo, in place, for an image of this width; `striped` undefined chooses at random. */

@@ -1,11 +1,12 @@
 // Two pinhole cameras, an object whose albedo varies smoothly, and a depth map that shows a part of it from nearer; nothing known.
-import { randomRow } from "./counts.mjs";
-import { chance, median } from "./numbers.mjs";
+import { measuredRows, rowByKind } from "./counts.mjs";
+import { chance } from "./numbers.mjs";
 import { drawPair, run } from "./measure-perspective.mjs";
 import { PINHOLE } from "./perspectives.mjs";
 import { FROM_ANYWHERE } from "./scenes.mjs";
 import { paintSoftly } from "./soft.mjs";
 
+const KINDS = ["whole depth map", "part of it"];
 const SCENES = 60;
 const QUICK_SCENES = 2;
 /** How many times nearer the depth camera may be. */
@@ -21,7 +22,7 @@ export const parts = {
     Array.from({ length: quick ? QUICK_SCENES : SCENES }, (_, index) => ({
       id: `parts/${index + 1}`,
       kind: "parts",
-      row: { scene: index + 1, kind: index % 3 === 2 ? "whole depth map" : "part of it" },
+      row: { scene: index + 1, kind: KINDS[index % 3 === 2 ? 0 : 1] },
       kit,
       seed: index + 1,
       ...PINHOLE,
@@ -29,16 +30,8 @@ export const parts = {
       part: index % 3 === 2 ? null : PART,
       options: FROM_ANYWHERE,
     })),
-  /** One row for all scenes, and one for each kind; the median is over all scenes, found or not. */
-  rows: (results) => {
-    const rows = results.map(({ cell, result }) => ({ ...cell.row, ...result }));
-    const kinds = [...new Set(rows.map(({ kind }) => kind))].map((kind) => ({
-      ...randomRow(rows.filter((row) => row.kind === kind)),
-      kind,
-      scenes: undefined,
-    }));
-    return { ...randomRow(rows), medianOfAll: median(rows.map(({ degrees }) => degrees)), kinds };
-  },
+  /** One row for all scenes, and one for each kind. */
+  rows: (results) => rowByKind(measuredRows(results), [{ key: "kind", values: KINDS }]),
 };
 
 /** The mask without the columns outside the centred share of those that have depth. */

@@ -1,7 +1,7 @@
 // Renders of objects whose albedo varies smoothly: noise fields of several scales, linear gradients, or both; nothing known.
 import { drawScene } from "./anywhere.mjs";
-import { randomRow } from "./counts.mjs";
-import { chance, median } from "./numbers.mjs";
+import { measuredRows, rowByKind } from "./counts.mjs";
+import { chance } from "./numbers.mjs";
 import { judged, optionsOf, withRun } from "./runs.mjs";
 import { FROM_ANYWHERE, requestOf } from "./scenes.mjs";
 
@@ -36,16 +36,8 @@ export const soft = {
       seed: index + 1,
       options: FROM_ANYWHERE,
     })),
-  /** One row for all scenes, and one for each half; the median is over all scenes, found or not. */
-  rows: (results) => {
-    const rows = results.map(({ cell, result }) => ({ ...cell.row, ...result }));
-    const kinds = HALVES.map((half) => ({
-      ...randomRow(rows.filter((row) => row.half === half)),
-      kind: half,
-      scenes: undefined,
-    }));
-    return { ...randomRow(rows), medianOfAll: median(rows.map(({ degrees }) => degrees)), kinds };
-  },
+  /** One row for all scenes, and one for each half. */
+  rows: (results) => rowByKind(measuredRows(results), [{ key: "half", values: HALVES }]),
 };
 
 const logUniform = (dice, low, high) => low * (high / low) ** dice.uniform();

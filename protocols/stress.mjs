@@ -1,6 +1,6 @@
 // Renders with the flaws of real pairs, nothing known: varying albedo, lamps with shadows, JPEG, depth in noisy steps.
 import { drawScene } from "./anywhere.mjs";
-import { randomRow } from "./counts.mjs";
+import { measuredRows, rowByKind } from "./counts.mjs";
 import { throughJpeg } from "./jpeg.mjs";
 import { blurred, SENSOR } from "./measure-sensors.mjs";
 import { chance, median, quantile } from "./numbers.mjs";
@@ -46,16 +46,11 @@ export const stress = {
       return { id: `stress/${index + 1}`, kind: "stress", row, kit, seed: index + 1, options: FROM_ANYWHERE };
     }),
   /** One row for all cells, and one for each kind. */
-  rows: (results) => {
-    const rows = results.map(({ cell, result }) => ({ ...cell.row, ...result }));
-    const group = (key, value) => ({
-      kind: value,
-      ...randomRow(rows.filter((row) => row[key] === value)),
-      scenes: undefined,
-    });
-    const kinds = [...PAINTS.map((kind) => group("paint", kind)), ...LIGHTS.map((kind) => group("lit", kind))];
-    return { ...randomRow(rows), kinds };
-  },
+  rows: (results) =>
+    rowByKind(measuredRows(results), [
+      { key: "paint", values: PAINTS },
+      { key: "lit", values: LIGHTS },
+    ]),
 };
 
 /** Pixels of an orthographic depth map (larger is farther) whose ray to the lamp is blocked by the map. */

@@ -198,8 +198,8 @@ mod long {
         assert!(report.pose.degrees_to(&sample.pose) < 2.0 && off.norm() < 3.0, "{off} {report:?}");
     }
 
-    /// From over 20 degrees aside, occluding contours belong to different parts of the surface: silhouettes fit best off the
-    /// true pose.
+    /// If the views are over 20 degrees apart, their occluding contours are different curves on the surface, so that
+    /// silhouettes fit best off the true pose.
     #[test]
     fn the_image_outweighs_silhouettes_that_agree() {
         let rotation = Angles { alpha: -12.0, beta: -26.0, gamma: 4.0 }.rotation();

@@ -42,7 +42,8 @@ pub struct SecondSearch {
 #[derive(Default)]
 pub struct Found {
     pub choice: Choice,
-    /// Evidence of the image for the choice, less that for the pose from silhouettes: a logarithm of likelihoods.
+    /// Evidence of the image for the choice, less that for the pose from silhouettes. It counts as a difference of log
+    /// likelihoods.
     pub lead: f64,
 }
 

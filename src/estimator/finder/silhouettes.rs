@@ -47,8 +47,8 @@ pub fn lead_near(
     lead(&mut SilhouetteRegistration::new(&problem), &problem, found, pose)
 }
 
-/// The logarithm of the likelihoods of independent Gaussian errors whose deviation is the noise. Both poses are judged
-/// without an edge bias.
+/// The logarithm of the likelihood ratio of independent Gaussian errors, whose deviation is the noise at each pose. Both poses
+/// are judged without an edge bias.
 fn lead(
     registration: &mut SilhouetteRegistration,
     problem: &SilhouetteProblem<'_>,

@@ -1,7 +1,7 @@
 //! The pose behind a pinhole, if nothing is known about it and the albedo varies (docs/method/registration.md): from
 //! silhouettes, and from a second search. Silhouettes pull a depth map of a part over the whole object, and the second
-//! search errs where shading has little contrast, so that neither decides alone: at each of both ends, the evidence of the
-//! image and that of the silhouettes are added.
+//! search errs where shading has little contrast, so that neither decides alone: the evidence of the image and that of the
+//! silhouettes are added at both poses, and the larger sum decides.
 
 use crate::estimator::decision::{Decision, Method};
 use crate::estimator::pair::ViewPair;

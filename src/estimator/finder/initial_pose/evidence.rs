@@ -69,8 +69,8 @@ impl InitialEvidence {
         let Some(mut best) = best.filter(|best| is_trusted(best)) else {
             return Ok(Decision::of(silhouettes.map_or_else(|| stay(pair, photometric, region), Method::Silhouettes)));
         };
-        // A single albedo explains the colours at a wrong pose, too, if the object is flat, but leaves more than noise. Silhouettes
-        // then fit far better elsewhere.
+        // A single albedo can explain the colours at a wrong pose, too, but leaves more than noise there. If silhouettes fit far
+        // better elsewhere, their pose is a rival.
         if !silhouettes::has_varying_albedo(pair, &best) && !pair.residuals(&best).is_noise() {
             let other = silhouettes.as_ref().filter(|found| !self.is_evident(pair, photometric, &best, found));
             rivals.extend(other.map(|found| found.pose));
