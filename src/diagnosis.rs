@@ -117,12 +117,6 @@ impl Residuals {
         self.noise <= (NOISE_OF_IMAGE * self.image_noise).max(SHARE_OF_SPREAD * self.spread)
     }
 
-    /// Whether the residuals exceed the share of the spread that a trusted pose may leave.
-    #[must_use]
-    pub fn is_unexplained(&self) -> bool {
-        self.noise.is_nan() || self.noise > LARGEST_UNEXPLAINED * self.spread
-    }
-
     /// Whether the residuals are a negligible share of the spread.
     #[must_use]
     pub fn is_next_to_nothing(&self) -> bool {

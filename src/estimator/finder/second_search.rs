@@ -70,7 +70,7 @@ impl SecondSearch {
         let mut search = Search::for_parts(&problem(pair, photometric)).ok()?;
         let evidence_for_silhouettes = silhouettes.and_then(|pose| {
             let judged = photometric.judge(pair, &pose)?;
-            Some(search.score_of(&pose)? + gain(pair.image.log_spread(), judged.visible as f64, judged.noise))
+            evidence(pair, &mut search, &judged)
         });
         let known = silhouettes.into_iter().chain(plain).collect();
         let evidence_for_silhouettes = evidence_for_silhouettes.unwrap_or(0.0);
@@ -141,6 +141,11 @@ impl SecondSearch {
             }
         }
     }
+}
+
+/// The evidence of the image for a pose, as the logarithm of a likelihood; `None` if too little overlaps there.
+pub fn evidence(pair: &ViewPair, search: &mut Search, judged: &PhotometricReport) -> Option<f64> {
+    Some(search.score_of(&judged.pose)? + gain(pair.image.log_spread(), judged.visible as f64, judged.noise))
 }
 
 /// Enters the end of a registration with its score.

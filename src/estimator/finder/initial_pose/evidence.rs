@@ -4,12 +4,17 @@ use super::registrations::InitialRegistrations;
 use super::trust_region::TrustRegion;
 use crate::error::Result;
 use crate::estimator::decision::{Decision, Method, Staying};
-use crate::estimator::finder::local_optima::{self, Choice};
+use crate::estimator::finder::candidates::problem;
+use crate::estimator::finder::local_optima::Choice;
+use crate::estimator::finder::second_search::evidence;
 use crate::estimator::finder::{local_contrast, silhouettes};
 use crate::estimator::gauge;
 use crate::estimator::pair::ViewPair;
 use crate::estimator::photometric::PhotometricRegistration;
-use crate::pose::{PhotometricReport, SilhouetteReport, Similarity};
+use crate::pose::{PhotometricReport, Search, SilhouetteReport, Similarity};
+
+/// Lead in evidence from which a photometric pose counts although the albedo varies: odds of twenty to one.
+const CLEAR_LEAD: f64 = 3.0;
 
 /// What is known about the surroundings of an initial pose.
 pub struct InitialEvidence {
@@ -57,49 +62,50 @@ impl InitialEvidence {
             return Ok(found);
         }
         let silhouettes = self.silhouettes.take();
-        // If the albedo varies, a photometric pose counts less than silhouettes when it hardly fits or is less certain.
-        let is_trusted = |best: &PhotometricReport| match &silhouettes {
-            Some(_) if !silhouettes::has_varying_albedo(pair, best) => true,
-            Some(found) => {
-                !pair.residuals(best).is_unexplained()
-                    && best.uncertainty.largest_rotation() <= found.uncertainty.largest_rotation()
+        let varies = best.as_deref().is_some_and(|best| silhouettes::has_varying_albedo(pair, best));
+        let lead = match (&best, &silhouettes) {
+            (Some(best), Some(found)) if varies || !pair.residuals(best).is_noise() => {
+                Some(self.lead(pair, photometric, best, found))
             }
-            None => true,
+            _ => None,
         };
-        let Some(mut best) = best.filter(|best| is_trusted(best)) else {
+        // Silhouettes do not depend on the albedo, so they decide where it varies, unless the image has clearly more evidence.
+        let is_beaten = varies && lead.is_some_and(|lead| lead < CLEAR_LEAD);
+        let Some(mut best) = best.filter(|_| !is_beaten) else {
             return Ok(Decision::of(silhouettes.map_or_else(|| stay(pair, photometric, region), Method::Silhouettes)));
         };
-        // A single albedo can explain the colours at a wrong pose, too, but leaves more than noise there. If silhouettes fit far
-        // better elsewhere, their pose is a rival.
-        if !silhouettes::has_varying_albedo(pair, &best) && !pair.residuals(&best).is_noise() {
-            let other = silhouettes.as_ref().filter(|found| !self.is_evident(pair, photometric, &best, found));
-            rivals.extend(other.map(|found| found.pose));
+        // A single albedo can explain the colours at a wrong pose, too, but leaves more than noise there. If silhouettes have
+        // more evidence, their pose is a rival.
+        if lead.is_some_and(|lead| lead < 0.0) {
+            rivals.extend(silhouettes.as_ref().map(|found| found.pose));
         }
         // Candidates are registered on a sample of the points; all points follow.
         let sampled = best.pose;
         photometric.register_again(pair, &mut best, &sampled, &ends)?;
         if region.holds(pair, &best.pose) {
-            return Ok(Decision { rivals: Some(rivals), ends, ..Decision::of(Method::Photometric(best)) });
+            let by_contrast = varies && lead.is_some();
+            return Ok(Decision { by: Method::Photometric(best), rivals: Some(rivals), ends, by_contrast });
         }
         let near = silhouettes.filter(|found| region.holds(pair, &found.pose));
         Ok(Decision::of(near.map_or_else(|| stay(pair, photometric, region), Method::Silhouettes)))
     }
 
-    /// Whether the evidence for a photometric pose is at least that for the pose from silhouettes.
-    fn is_evident(
+    /// Evidence for a photometric pose, less that for the pose from silhouettes.
+    fn lead(
         &self,
         pair: &ViewPair,
         photometric: &mut PhotometricRegistration,
         best: &PhotometricReport,
         found: &SilhouetteReport,
-    ) -> bool {
-        let gain = |report: &PhotometricReport| {
-            local_optima::gain(pair.image.log_spread(), report.visible as f64, report.noise)
+    ) -> f64 {
+        let mut search = Search::for_parts(&problem(pair, photometric)).ok();
+        let mut of_image = |judged: &PhotometricReport| {
+            search.as_mut().and_then(|search| evidence(pair, search, judged)).unwrap_or(0.0)
         };
-        let lead = gain(best) - photometric.judge(pair, &found.pose).map_or(0.0, |judged| gain(&judged));
+        let lead = of_image(best) - photometric.judge(pair, &found.pose).map_or(0.0, |judged| of_image(&judged));
         let normals = photometric.normals();
         let of_silhouettes = |prior| silhouettes::lead_near(pair, normals, prior, found, &best.pose);
-        lead >= self.region.prior(pair).map_or(0.0, of_silhouettes)
+        lead - self.region.prior(pair).map_or(0.0, of_silhouettes)
     }
 }
 
