@@ -120,3 +120,64 @@ fn stay(pair: &ViewPair, photometric: &mut PhotometricRegistration, region: &Tru
         false => Staying::ExplainsNothing,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::{Options, Start};
+    use crate::pose::{Angles, SilhouetteProblem, SilhouetteRegistration};
+    use crate::scenes::{SampleRequest, Scene, light, surface};
+    use crate::view::{Camera, ColourSamples, Lens, Pinhole, Size};
+
+    /// A bust with dark waves of albedo behind a pinhole, its true pose given, and a pose seven degrees off.
+    fn pair_and_wrong_pose() -> (ViewPair, Similarity) {
+        let camera = Camera::Pinhole(Pinhole { fx: 288.0, fy: 288.0, cx: 47.5, cy: 35.5, lens: Lens::None });
+        let sample = Scene::new(&surface("bust").unwrap()).unwrap().sample(&SampleRequest {
+            size: Size { width: 96, height: 72 },
+            light: light("colourful").unwrap(),
+            rotation: Angles { alpha: -5.0, beta: 20.0, gamma: 5.0 }.rotation(),
+            image_camera: camera,
+            depth_camera: camera,
+            ..SampleRequest::default()
+        });
+        let sample = sample.unwrap();
+        let mut image = sample.colour_image();
+        let painted = |index: usize| {
+            let (column, row) = sample.image.size.position(index);
+            let wave = (-0.4 * (0.5 * column as f32 + 0.3 * row as f32).sin()).exp();
+            [0, 1, 2].map(|channel| wave * (0.05 + sample.image.colours[3 * index + channel]))
+        };
+        image.samples = ColourSamples::RgbLinear((0..sample.image.size.len()).flat_map(painted).collect());
+        let Similarity { rotation, scale, translation } = sample.pose;
+        let start = Start::Pose { rotation, scale: Some(scale), translation: Some(translation) };
+        let pair = ViewPair::new(image, &sample.depth_map(), Options { start, ..Options::default() }).unwrap();
+        let middle = pair.depth.points.centroid();
+        let turned = sample.pose.rotation * Angles { beta: 7.0, ..Angles::default() }.rotation();
+        let shifted = sample.pose.apply(middle) - scale * (turned * middle);
+        (pair, Similarity { rotation: turned, scale, translation: shifted })
+    }
+
+    #[test]
+    fn evidence_decides_between_image_and_silhouettes_and_their_sigmas_do_not() {
+        let (pair, wrong) = pair_and_wrong_pose();
+        let region = TrustRegion::of(&pair).unwrap();
+        let (truth, prior) = (region.initial, region.prior(&pair).unwrap());
+        for (of_image, of_silhouettes) in [(truth, wrong), (wrong, truth)] {
+            let mut photometric = PhotometricRegistration::new(&pair);
+            let mut best = photometric.judge(&pair, &of_image).unwrap();
+            assert!(silhouettes::has_varying_albedo(&pair, &best));
+            let normals = photometric.normals();
+            let problem = SilhouetteProblem { image: &pair.image, depth: &pair.depth, normals, prior };
+            let mut found = Box::new(SilhouetteRegistration::new(&problem).judge(&problem, &of_silhouettes));
+            let [sure, unsure] = [[0.1; 3], [9.0; 3]];
+            let is_right = of_image == truth;
+            best.uncertainty.rotation_degrees = if is_right { unsure } else { sure };
+            found.uncertainty.rotation_degrees = if is_right { sure } else { unsure };
+            let mut evidence = InitialEvidence { region: region.clone(), noisy: None, silhouettes: Some(found) };
+            let choice = Choice { best: Some(best), ..Choice::default() };
+            let decision = evidence.conclude(&pair, &mut photometric, choice, None).unwrap();
+            assert_eq!(decision.photometric().is_some(), is_right);
+            assert!(decision.pose().unwrap().degrees_to(&truth) < 3.0);
+        }
+    }
+}
