@@ -119,6 +119,13 @@ pub(super) struct Start {
     pub score: f64,
 }
 
+impl Start {
+    /// An initial pose whose discontinuities have yet to be found.
+    pub const fn at(round: Round) -> Self {
+        Self { round, discontinuities: vec![], score: 0.0 }
+    }
+}
+
 /// The evidence of all cues at a state.
 pub(super) struct Findings {
     pub units: Units,
@@ -339,7 +346,7 @@ impl Scene {
 
     /// The registration of a pose by its edges, level by level, with the images blurred for each level.
     pub fn registered(&self, round: Round, sigmas: &[f64], planes: &[Vec<Planes>]) -> Start {
-        let mut start = Start { round, discontinuities: vec![], score: 0.0 };
+        let mut start = Start::at(round);
         for (sigma, planes) in sigmas.iter().zip(planes) {
             self.find_anew(&mut start);
             self.approach(&mut start, sigma * self.scale, planes);
