@@ -12,6 +12,7 @@ use super::readings::Reading;
 use super::reason::{CheckReason, Margin, Warning, WarningKind};
 use super::registration::{Findings, Round};
 use super::report::{CheckReport, CueReport, FrameReport};
+use super::rereading::readings_of;
 use super::unknowns::{FOCAL, Matrix, POSE, State, Vector, add_square};
 use super::verdict::{CandidateReport, CheckVerdict, Judge, LEAST_COMPARED_SHARE};
 
@@ -142,7 +143,7 @@ impl CalibrationCheck {
             let own = judge.judge(name, state, &read, None);
             (own.verdict != CheckVerdict::Off && density > least).then_some((density, own.health, reading))
         };
-        let fitting = Reading::all_poses(&candidate.pose).filter_map(likely);
+        let fitting = readings_of(&self.scene, &candidate.pose).filter_map(likely);
         if let Some((_, health, reading)) = fitting.max_by(|a, b| a.0.total_cmp(&b.0)) {
             report.reason = CheckReason::Misread { reading, margin: Margin { health, tolerance: judge.tolerance() } };
         }
@@ -196,10 +197,9 @@ impl CalibrationCheck {
             if is_silent {
                 report.without_evidence();
             }
-            if !is_seen || !self.scene.is_seen(candidate) {
+            if !self.scene.is_seen(candidate) {
                 report.without_points(is_seen, self.width);
-            }
-            if is_seen && overlap < LEAST_COMPARED_SHARE {
+            } else if overlap < LEAST_COMPARED_SHARE {
                 report.with_little_overlap(overlap);
             }
             report

@@ -144,6 +144,15 @@ impl Reading {
         Self::POSES.into_iter().flat_map(|reading| reading.of(pose).into_iter().map(move |pose| (reading, pose)))
     }
 
+    /// The pose that this reading approaches if it shrinks a part of the candidate: the one without this part.
+    pub(super) fn limit(self, read: &Similarity) -> Option<Similarity> {
+        match self {
+            Self::Degrees => Some(Similarity { rotation: Matrix3::identity(), ..*read }),
+            Self::Millimetres => Some(Similarity { translation: Vector3::zeros(), ..*read }),
+            _ => None,
+        }
+    }
+
     fn one_of(self, pose: &Similarity) -> Option<Similarity> {
         let Similarity { rotation, translation, .. } = *pose;
         let rigid = |rotation, translation| Some(Similarity { scale: 1.0, rotation, translation });

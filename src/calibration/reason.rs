@@ -57,7 +57,7 @@ pub enum CheckReason {
     },
     /// Undecided: the interval holds errors within the tolerance and errors beyond it.
     TooClose(Margin),
-    /// Undecided: no pose puts points onto the image.
+    /// Off: neither the candidate nor any pose that was tried puts points onto the image.
     NoPoseOnImage,
     /// Undecided: the estimate puts few of the depth points onto the image.
     LittleOverlap {
@@ -121,14 +121,14 @@ impl fmt::Display for CheckReason {
             Self::WithinTolerance(margin) => write!(f, "Its error is {margin}; {}.", margin.limit()),
             Self::NothingAgainst { margin, shown } => write!(
                 f,
-                "Nothing contradicts it, and this scene shows errors beyond {} px. Its error is {margin}; the interval ends above \
+                "Nothing contradicts it, and an error above {} px would show in this scene. Its error is {margin}; the interval ends above \
                  the limit of {} px because it includes the uncertainty of the estimate.",
                 Fixed(*shown, 1),
                 Fixed(margin.tolerance, 1)
             ),
             Self::OffTarget { margin, offset } => write!(f, "Off by about {offset}: {margin}; {}.", margin.limit()),
             Self::Misread { reading, margin } => {
-                write!(f, "Off as given, but it fits {reading}: its error is then {margin}; {}.", margin.limit())
+                write!(f, "Off as given, but it fits far better {reading}: its error is then {margin}; {}.", margin.limit())
             }
             Self::NoPointsOnImage => {
                 f.write_str("Off, or read in a wrong convention: it puts no points onto the image.")
@@ -150,7 +150,9 @@ impl fmt::Display for CheckReason {
             Self::TooClose(margin) => {
                 write!(f, "Its error is too uncertain to decide: {margin}; {}.", margin.limit())
             }
-            Self::NoPoseOnImage => f.write_str("No pose puts its points onto the image."),
+            Self::NoPoseOnImage => f.write_str(
+                "Off, or read in a wrong convention: neither it nor any pose that was tried puts points onto the image.",
+            ),
             Self::LittleOverlap { percent } => write!(
                 f,
                 "The best fit puts only {} % of the depth points onto the image, too few to rely on.",
@@ -358,7 +360,7 @@ mod tests {
         let reason = CheckReason::NothingAgainst { margin, shown: 3.1 };
         assert_eq!(
             reason.to_string(),
-            "Nothing contradicts it, and this scene shows errors beyond 3.1 px. Its error is 2.7 px at the scene's depth (95 %: \
+            "Nothing contradicts it, and an error above 3.1 px would show in this scene. Its error is 2.7 px at the scene's depth (95 %: \
              1.0 to 4.8); the interval ends above the limit of 3.5 px because it includes the uncertainty of the estimate."
         );
     }

@@ -8,9 +8,23 @@ use super::planes::Planes;
 use super::readings::Reading;
 use super::registration::{ARRIVED, MOST_SETTLING, Round, SIGMAS, Scene, Start};
 use super::unknowns::State;
+use super::verdict::TOLERANCE;
+use crate::pose::Similarity;
 
 /// Number of readings that proceed after each level, the best by score.
 const SURVIVORS: [usize; 4] = [6, 3, 2, 1];
+
+/// The poses of a candidate in all conventions. A reading that shrinks a rotation or translation until the scene hardly shows it is left
+/// out: between cameras with nearly the same pose, it would fit whatever is wrong with the candidate.
+pub(super) fn readings_of(scene: &Scene, pose: &Similarity) -> impl Iterator<Item = (Reading, Similarity)> {
+    Reading::all_poses(pose).filter(move |(reading, read)| {
+        let is_shown = |limit| {
+            let (read, limit) = (State::at(*read), State::at(limit));
+            scene.units(&read).between(&read, &limit).norm() > TOLERANCE * scene.scale
+        };
+        reading.limit(read).is_none_or(is_shown)
+    })
+}
 
 /// The readings under way.
 pub(super) struct Rereading {
@@ -34,7 +48,7 @@ impl Rereading {
             let round = Round::from(state, state);
             scene.is_seen(&state).then(|| (reading, Start { round, discontinuities: vec![], score: 0.0 }))
         };
-        let starts = Reading::all_poses(&candidate.pose).filter_map(start).collect();
+        let starts = readings_of(scene, &candidate.pose).filter_map(start).collect();
         Self { optima, starts, level: 0, index: 0, planes: scene.planes(SIGMAS[0] * scene.scale) }
     }
 

@@ -288,14 +288,16 @@ impl CandidateReport {
         self.reason = CheckReason::BetweenOptima(Margin { health: self.health, tolerance });
     }
 
-    /// Overrides the verdict if the estimate or the candidate puts hardly any point onto the image.
+    /// Overrides the verdict if the candidate puts hardly any point onto the image. `is_end_seen` tells whether the best fit does.
     #[inline(never)]
     pub(super) fn without_points(&mut self, is_end_seen: bool, width: f64) {
-        (self.verdict, self.reason, self.probability) = if is_end_seen {
-            (CheckVerdict::Off, CheckReason::NoPointsOnImage, 0.0)
+        self.verdict = CheckVerdict::Off;
+        self.probability = 0.0;
+        self.reason = if is_end_seen {
+            CheckReason::NoPointsOnImage
         } else {
             self.health = Judge::blind(width);
-            (CheckVerdict::Undecided, CheckReason::NoPoseOnImage, 1.0)
+            CheckReason::NoPoseOnImage
         };
     }
 }
