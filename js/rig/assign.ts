@@ -4,6 +4,7 @@
  * A file may hold a camera several times, once for each size of its pictures; the one of this size is used. If no camera has this size, one
  * of the same view is scaled, with a warning.
  */
+import { digits } from "./formats/digits.js";
 import { isLidar, linked } from "./formats/frames.js";
 import { poseOf } from "./formats/poses.js";
 import { haveLikeAspects, scaledCamera } from "./scale.js";
@@ -172,7 +173,7 @@ export function forSize(
       warnings.push(
         warning(
           "principal-point",
-          `The intrinsics of the ${what} have their principal point ${where} (${cx}, ${cy} of ${width}x${height}): they may be for another size, about ${Math.round(2 * cx + 1)}x${Math.round(2 * cy + 1)}.`,
+          `The intrinsics of the ${what} have their principal point ${where} (${digits(cx)}, ${digits(cy)} of ${width}x${height}): they may be for another size, about ${Math.round(2 * cx + 1)}x${Math.round(2 * cy + 1)}.`,
           { cx, cy },
         ),
       );
