@@ -4,12 +4,11 @@
  * A file may hold a camera several times, once for each size of its pictures; the one of this size is used. If no camera has this size, one
  * of the same view is scaled, with a warning.
  */
-import { digits } from "./formats/digits.js";
 import { isLidar, linked } from "./formats/frames.js";
 import { poseOf } from "./formats/poses.js";
 import { haveLikeAspects, scaledCamera } from "./scale.js";
 import type { CheckFrame, NamedCamera, NamedPose, RigFolder } from "./types.js";
-import { type ReaderWarning, distinct, warning } from "./warnings.js";
+import { type ReaderWarning, digits, distinct, warning } from "./warnings.js";
 
 const COLOUR = /colou?r|rgb|\bhr\b/i;
 const DEPTH = /depth|dpt|\bir\b|infra|tof|\blr\b/i;

@@ -1,7 +1,7 @@
 /** Describes cameras and poses in plain words. */
-import { digits } from "./formats/digits.js";
 import { degreesOf } from "./formats/poses.js";
 import type { NamedCamera, NamedPose } from "./types.js";
+import { digits } from "./warnings.js";
 
 /** Largest number of cameras or poses that are described individually. */
 const FEW = 4;

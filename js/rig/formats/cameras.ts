@@ -1,11 +1,10 @@
 /** Checks the cameras of files and converts their distortion to OpenCV's order. */
 import { badFile } from "../../errors.js";
 import type { NamedCamera } from "../types.js";
-import { digits } from "./digits.js";
 import { lensNamed } from "./lenses.js";
 import { MOST_SIDE } from "./limits.js";
 import type { Numbers } from "./numbers.js";
-import { type ReaderWarning, warning } from "../warnings.js";
+import { type ReaderWarning, digits, warning } from "../warnings.js";
 
 /** A camera as a file states it, before it is checked. */
 export interface RawCamera {
