@@ -93,7 +93,11 @@ fn doubts(raw: &RawCamera, size: Option<[usize; 2]>, label: &str, warnings: &mut
         ),
         None if cx <= 0.0 || cy <= 0.0 => warnings.add(
             "principal-point",
-            format!("{label} has the principal point {}, {}, which is outside any image.", brief(cx, DIGITS), brief(cy, DIGITS)),
+            format!(
+                "{label} has the principal point {}, {}, which is outside any image.",
+                brief(cx, DIGITS),
+                brief(cy, DIGITS)
+            ),
         ),
         _ => {}
     }
