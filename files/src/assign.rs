@@ -5,7 +5,7 @@ use bimodal_stereo::Pinhole;
 
 use crate::text::NamedCamera;
 use crate::text::names::{Pattern, pattern};
-use crate::text::numbers::shown;
+use crate::text::numbers::{DIGITS, brief};
 use crate::warning::Warning;
 
 static COLOUR: Pattern = Pattern::new(|| pattern(r"(?i)colou?r|rgb|\bhr\b"));
@@ -90,8 +90,8 @@ pub fn assigned(
                 "principal-point",
                 &format!(
                     "The intrinsics of the {what} have their principal point outside the picture ({}, {} of {width}x{height}): they may be for another size.",
-                    shown(*cx),
-                    shown(*cy)
+                    brief(*cx, DIGITS),
+                    brief(*cy, DIGITS)
                 ),
             );
         }

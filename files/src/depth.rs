@@ -174,7 +174,7 @@ fn judged(
         );
     }
     if 1.0 - valid > MANY_HOLES {
-        warnings.add("many-holes", format!("{} of the depth map is missing.", percent(1.0 - valid)));
+        warnings.add("many-holes", format!("{} % of the depth map is missing.", fixed(100.0 * (1.0 - valid), 0)));
     }
     let says = format!(
         "{}x{}, {stored}, read as {}, {} valid, {range}",

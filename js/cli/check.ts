@@ -3,7 +3,7 @@ import { writeFileSync } from "node:fs";
 import { reasonOf } from "../errors.js";
 import { posesForClouds } from "../rig/turned.js";
 import type { NamedFile, RigReading } from "../rig/types.js";
-import type { CheckReport } from "../types/index.js";
+import type { CheckFrame, CheckReport } from "../types/index.js";
 import { type Arguments, Mistake } from "./arguments.js";
 import { candidatesOf } from "./candidates.js";
 import { file, filesOf, inputsOf } from "./files.js";
@@ -74,6 +74,12 @@ async function checkCameras(cameras: NamedFile[], { readRigFile }: Modules): Pro
   }
 }
 
+/** Frames whose names are numbers alone, as on the page: "0: 48 % .." would read like a number. */
+const called = (frames: CheckFrame[]): CheckFrame[] =>
+  frames.map((frame, index) =>
+    /^\d+$/.test(frame.name ?? "") ? { ...frame, name: `frame ${index + 1} (${frame.name})` } : frame,
+  );
+
 async function checkFolder(args: Arguments): Promise<number> {
   const loaded = await modules();
   const calibrations = args.calibrations.map((path) => file(path));
@@ -93,13 +99,14 @@ async function checkFolder(args: Arguments): Promise<number> {
     const first = read.warnings[0] ? `: ${read.warnings[0].message}` : "";
     throw new Mistake(`${args.folder}: it contains no readable pair of a colour image and a depth map${first}`, "file");
   }
+  const frames = called(read.frames);
   const given = Object.entries(candidates).map(([name, pose]) => ({ name, pose }));
-  const poses = posesForClouds(given, read.frames, read.warnings);
+  const poses = posesForClouds(given, frames, read.warnings);
   const judged = Object.fromEntries(poses.map(({ name = "", pose }) => [name, pose]));
-  const report = await checked(loaded, read.frames, judged, args.checking);
+  const report = await checked(loaded, frames, judged, args.checking);
   const whole = capped(report, [...report.warnings, ...warnings, ...read.warnings.map(ofReader)]);
   const inputs = inputsOf([...found, ...read.readings], [...calibrations, ...cameras, ...files] as NamedFile[]);
-  await write(loaded, args, { whole, frames: read.frames, poses, inputs });
+  await write(loaded, args, { whole, frames, poses, inputs });
   return CODES[whole.verdict] ?? BAD;
 }
 

@@ -1,5 +1,6 @@
 /** The report with the additions of the readers, and its text for a terminal. */
 import type { ReaderWarning } from "../rig/warnings.js";
+import { resultsOf, verdictReason } from "../rig/write/report/words.js";
 import type { CheckReport } from "../types/index.js";
 
 /** Warnings in the form of the contract. */
@@ -28,7 +29,7 @@ export function capped(report: CheckReport, all: Judged[]): Whole {
   const doubt = distinct.find(({ isDoubt }) => isDoubt !== false);
   const warnings = distinct.map(({ isDoubt: _, ...plain }) => plain);
   if (report.verdict !== "consistent" || doubt === undefined) return { ...report, warnings };
-  const reason = `Looks right, see warnings: ${doubt.message} ${report.reason}`;
+  const reason = `It would be consistent without this warning: ${doubt.message} ${report.reason}`;
   return { ...report, warnings, verdict: "undecided", code: "doubtful", reason };
 }
 
@@ -49,12 +50,12 @@ function table(rows: string[][]): string[] {
 }
 
 /** The verdict with its reason. */
-const headline = ({ verdict, reason }: Whole): string => `${verdict.toUpperCase()}: ${reason}`;
+const headline = (report: Whole): string => `${report.verdict.toUpperCase()}: ${verdictReason(report)}`;
 
 /** The report for a terminal. */
 export function textOf(report: Whole): string {
   const { rotation: r, translation: t } = report.estimate;
-  const candidates = Object.entries(report.candidates).map(([name, found]) => [
+  const candidates = resultsOf(report).map(([name, found]) => [
     ...[name, found.verdict, `${short(found.offDegrees)} deg`, `${short(found.offMillimetres)} mm`],
     ...[pixels(found), short(found.probability)],
   ]);

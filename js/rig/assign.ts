@@ -8,7 +8,7 @@ import { isLidar, linked } from "./formats/frames.js";
 import { poseOf } from "./formats/poses.js";
 import { haveLikeAspects, scaledCamera } from "./scale.js";
 import type { CheckFrame, NamedCamera, NamedPose, RigFolder } from "./types.js";
-import { type ReaderWarning, distinct, warning } from "./warnings.js";
+import { type ReaderWarning, digits, distinct, warning } from "./warnings.js";
 
 const COLOUR = /colou?r|rgb|\bhr\b/i;
 const DEPTH = /depth|dpt|\bir\b|infra|tof|\blr\b/i;
@@ -172,7 +172,7 @@ export function forSize(
       warnings.push(
         warning(
           "principal-point",
-          `The intrinsics of the ${what} have their principal point ${where} (${cx}, ${cy} of ${width}x${height}): they may be for another size, about ${Math.round(2 * cx + 1)}x${Math.round(2 * cy + 1)}.`,
+          `The intrinsics of the ${what} have their principal point ${where} (${digits(cx)}, ${digits(cy)} of ${width}x${height}): they may be for another size, about ${Math.round(2 * cx + 1)}x${Math.round(2 * cy + 1)}.`,
           { cx, cy },
         ),
       );

@@ -79,7 +79,9 @@ function doubts({ sample, ...extent }: Values, unit: Unit, valid: number, range:
       ),
     );
   if (1 - valid > MANY_HOLES)
-    warnings.push(warning("many-holes", `${percent(1 - valid)} of the depth map is missing.`, { share: 1 - valid }));
+    warnings.push(
+      warning("many-holes", `${(100 * (1 - valid)).toFixed(0)} % of the depth map is missing.`, { share: 1 - valid }),
+    );
   return warnings;
 }
 

@@ -102,6 +102,9 @@ const HARMLESS: ReadonlySet<ReaderCode> = new Set([
   "camera-to-world",
 ]);
 
+/** A number in a message, with five significant digits: a file's own digits, of which there may be sixteen, hide the value. */
+export const digits = (value: number): string => Number(value.toPrecision(5)).toString();
+
 export const warning = (
   code: ReaderCode,
   message: string,

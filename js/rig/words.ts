@@ -1,8 +1,8 @@
 /** Describes cameras and poses in plain words. */
 import { degreesOf } from "./formats/poses.js";
 import type { NamedCamera, NamedPose } from "./types.js";
+import { digits } from "./warnings.js";
 
-const digits = (value: number): string => Number(value.toPrecision(5)).toString();
 /** Largest number of cameras or poses that are described individually. */
 const FEW = 4;
 

@@ -33,11 +33,22 @@ import { report } from ${JSON.stringify(new URL("rig-sample.mjs", import.meta.ur
 export default async () => {};
 export const projectFrame = async () => ({ edges: new Float32Array(2) });
 export async function checkCalibration(frames, candidates, { signal, onProgress, ...options }) {
+  if (frames[0].verdict === "named") return called(frames);
   const { verdict, sure } = frames[0];
   for (let k = 0; k <= 100; k++) onProgress(k / 100, "edges of " + frames.length);
   while (verdict === "wait") { await new Promise((go) => setTimeout(go, 10)); signal.throwIfAborted(); }
   if (verdict === "broken") throw new TypeError("a bug");
   return { ...report(), verdict, reason: JSON.stringify({ candidates, options }), warnings: sure ? [] : [{ code: "many-holes", message: "one of the check's" }] };
+}`;
+
+/** A report on named frames in which warnings alone keep the first candidate from "consistent". */
+const CALLED = `
+function called(frames) {
+  const made = report();
+  const [name, first] = Object.entries(made.candidates)[0];
+  const reason = "Its error is 1.0 px; the limit is 3.5 px.";
+  return { ...made, verdict: "undecided", code: "doubtful", reason: "Capped.", candidates: { ...made.candidates, [name]: { ...first, verdict: "consistent", reason } },
+    frames: frames.map(({ name }) => ({ name, share: 0.5 })), warnings: frames.map(({ name }) => ({ code: "many-holes", message: name + ": 48 % of the depth map is missing." })) };
 }`;
 
 mkdirSync(join(root, "pkg"));
@@ -48,7 +59,7 @@ cpSync(inRoot("examples/check-folder.mjs"), join(root, "examples/check-folder.mj
 for (const file of readdirSync(inRoot("pkg")).filter((name) => /\.(js|json|wasm)$/.test(name)))
   cpSync(inRoot("pkg", file), join(root, "pkg", file));
 writeFileSync(join(root, "pkg/rig.js"), RIG);
-writeFileSync(join(root, "pkg/index.js"), INDEX);
+writeFileSync(join(root, "pkg/index.js"), INDEX + CALLED);
 writeFileSync(
   join(root, "pkg/rig-write.js"),
   `export * from ${JSON.stringify(new URL("../../pkg/rig-write.js", import.meta.url).href)};`,
@@ -69,6 +80,7 @@ write("consistent/deep/0001.json", { kind: "frame", verdict: "consistent", sure:
 write("guessed/deep/0001.json", { kind: "frame", verdict: "consistent" });
 for (const verdict of ["off", "undecided", "wait", "broken", "odd"])
   write(`${verdict}/deep/0001.json`, { kind: "frame", verdict });
+for (const name of ["0", "left"]) write(`named/${name}.json`, { kind: "frame", verdict: "named", name });
 write("none/0001.json", { kind: "other" });
 write("off/.hidden/0002.json", { kind: "frame", verdict: "consistent" });
 write("one.json", { kind: "poses", poses: [{ pose: pose(1) }] });
@@ -114,10 +126,22 @@ describe("exit codes", () => {
     ]) {
       const { status, stdout } = check(...args, "--json", "guessed.json");
       assert.equal(status, 2);
-      assert.match(stdout, /^UNDECIDED: Looks right, see warnings: (one of the check's|two.json: a guess) /);
+      assert.match(
+        stdout,
+        /^UNDECIDED: It would be consistent without this warning: (one of the check's|two.json: a guess) /,
+      );
       assert.equal(JSON.parse(readFileSync(join(root, "guessed.json"), "utf8")).verdict, "undecided");
     }
     assert.doesNotMatch(check("off", "--calibration", "one.json").stdout, /Settled/);
+  });
+
+  test("a capped verdict has one word in the first line and in its row, and a frame whose name is a number is called one", () => {
+    const { status, stdout } = check("named", "--calibration", "one.json");
+    assert.equal(status, 2);
+    assert.match(stdout, /^UNDECIDED: It would be consistent without the warnings\. Its error is 1\.0 px; /);
+    assert.match(stdout, /^factory\.yaml +undecided /m);
+    assert.match(stdout, /^frames: frame 1 \(0\) 50 %, left 50 %$/m);
+    assert.match(stdout, /^warning: frame 1 \(0\): 48 % of the depth map is missing\.$/m);
   });
 
   test("3 for what is wrong with the input, said in one line", () => {

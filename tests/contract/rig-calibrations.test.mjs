@@ -370,15 +370,21 @@ test("frames are told from names", async () => {
 });
 
 test("odd cameras are warned of", async () => {
-  const warned = async (camera, expected) => {
+  const warned = async (camera, expected, words = /./) => {
     const { warnings } = await read("k.json", JSON.stringify(camera));
     assert.ok(
-      warnings.some(({ code }) => code === expected),
+      warnings.some(({ code, message }) => code === expected && words.test(message)),
       JSON.stringify(warnings),
     );
   };
   await warned({ fx: 0.9, fy: 0.9, cx: 0.5, cy: 0.5 }, "focal-length-normalised");
   await warned({ fx: 500, fy: 500, cx: 900, cy: 240, width: 640, height: 480 }, "principal-point");
+  // A message rounds a file's sixteen digits.
+  await warned(
+    { fx: 500, fy: 500, cx: 651.1648988223807, cy: 507.4723326680093, width: 640, height: 480 },
+    "principal-point",
+    /\(651\.16, 507\.47 of 640x480\)/,
+  );
   await warned(
     {
       K: [

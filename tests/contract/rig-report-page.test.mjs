@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { after, describe, test } from "node:test";
 import init, { sampleRig } from "../../pkg/index.js";
 import { shellCheck } from "../../pkg/rig-report.js";
-import { verdictWords } from "../../pkg/rig-words.js";
+import { limitOf, resultsOf, verdictReason, verdictWords } from "../../pkg/rig-words.js";
 import { reportHtml, writePose } from "../../pkg/rig-write.js";
 import { writePng } from "../../pkg/write.js";
 import { inRoot } from "../../scripts/shell.mjs";
@@ -114,6 +114,25 @@ describe("the unknowns", () => {
   });
 });
 
+describe("a calibration that is off within each interval", () => {
+  const [name] = Object.keys(report().candidates);
+  const candidate = report().estimate;
+  const page = (given) => reportHtml(given, [], { calibrations: { [name]: candidate } });
+  const WORDS = "The six unknowns are correlated";
+
+  test("is explained", () => {
+    assert.ok(page(report()).includes(WORDS));
+  });
+
+  test("is not where a value lies outside, nor for another verdict or without the candidate's numbers", () => {
+    const far = { ...candidate, translation: [0.1, 0, 0] };
+    assert.ok(!reportHtml(report(), [], { calibrations: { [name]: far } }).includes(WORDS));
+    const undecided = { ...report().candidates[name], verdict: "undecided" };
+    assert.ok(!page({ ...report(), candidates: { [name]: undecided } }).includes(WORDS));
+    assert.ok(!reportHtml(report()).includes(WORDS));
+  });
+});
+
 describe("the verdict in words", () => {
   const of = (verdict, own, warnings = 0) => ({
     ...report(),
@@ -124,11 +143,31 @@ describe("the verdict in words", () => {
 
   test("has the word of the page", () => {
     assert.equal(verdictWords(of("consistent", "consistent")), "Consistent");
-    assert.equal(verdictWords(of("undecided", "consistent", 1)), "Looks right, see warnings");
+    assert.equal(verdictWords(of("undecided", "consistent", 1)), "Undecided, see warnings");
     assert.equal(verdictWords(of("undecided", "undecided", 1)), "Undecided");
     assert.equal(verdictWords(of("off", "off")), "Off");
     assert.equal(verdictWords(of("off", "off", 2)), "Off, see warnings");
     assert.equal(verdictWords(of("off", "off"), true), "Estimated");
+  });
+
+  test("is the same in the row of the candidate, with what keeps it from consistent", () => {
+    const capped = of("undecided", "consistent", 1);
+    const [[name, { verdict, reason }]] = resultsOf(capped);
+    assert.deepEqual([name, verdict], ["a", "undecided"]);
+    assert.equal(reason, `It would be consistent without the warnings. ${capped.candidates.a.reason}`);
+    assert.equal(verdictReason(capped), reason);
+    const { text } = harmless(reportHtml(capped));
+    assert.ok(text.includes("Undecided, see warnings") && !text.includes("Consistent"), text);
+    // Other candidates and verdicts keep their own words.
+    assert.deepEqual(resultsOf(report()), Object.entries(report().candidates));
+  });
+
+  test("states the limit in its sentences", () => {
+    const saying = (reason) => ({ reason: "", candidates: { a: { reason } } });
+    assert.equal(limitOf(saying("Its error is 1.2 px (95 %: 0.4 to 1.9); the limit is 3.5 px.")), 3.5);
+    assert.equal(limitOf(saying("the interval ends above the limit of 10.5 px because")), 10.5);
+    assert.equal(limitOf(saying("It puts no points onto the image.")), undefined);
+    assert.equal(limitOf({ ...saying(""), reason: "the limit is 7 px." }), 7);
   });
 
   test("has its number at once, and that of the best fit without a calibration", () => {
@@ -271,6 +310,8 @@ describe("the command", () => {
       assert.ok(text.includes(name.replaceAll("'", "&#39;")) && text.includes(sha256), name);
     for (const words of ["cues edges", "unit 0.001 m", `Node ${process.version}`, "wasm SHA-256", "Before, with"])
       assert.ok(text.includes(words), words);
+    // The page compares errors with the limit that the check's own sentences state, 3.5 px of an image 640 wide.
+    assert.equal(limitOf(kept), Number((3.5 * Math.max(1, image.width / 640)).toFixed(1)));
     const found = unknowns(page).map(({ values }) => values[1]);
     valuesOf(kept.estimate).forEach((value, k) => assert.ok(Math.abs(value - found[k]) < 0.006, `${k}`));
   });

@@ -134,6 +134,13 @@ describe("curves", () => {
     assert.equal(words(offsets.map(() => 7)), "not constrained from \u22125 to 5°");
   });
 
+  test("a minimum at the end of the range is said to lie there or beyond", () => {
+    const end = "the minimum is at the end of the range or beyond, ";
+    assert.equal(words(parabola(7, 2)), `${end}5.0° (2.6 to above 5)`);
+    assert.ok(words(parabola(-7, 2), "tx").startsWith(`${end}\u22125.0 mm (below`));
+    assert.ok(!words(parabola(4.9, 1)).includes("end of the range"));
+  });
+
   test("the order of offsets does not matter, nor what is missing between", () => {
     const values = parabola(0.5, 1);
     const order = offsets.map((_, k) => (k * 37) % 101);

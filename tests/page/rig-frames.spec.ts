@@ -155,7 +155,7 @@ test("a folder comes in order, with its masks to be seen and left out, and its g
   await page.getByLabel("Or paste it in any of these formats").fill("1 0 0 0.02\n0 1 0 0\n0 0 1 0\n0 0 0 1");
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await page.getByRole("button", { name: "Run the check" }).locator("visible=true").click();
-  await expect(page.locator(".rig-word")).toHaveText("Looks right, see warnings");
+  await expect(page.locator(".rig-word")).toHaveText("Undecided, see warnings");
   await expect(page.locator(".rig-verdict")).toContainText("they are used for both pictures");
   await expect(page.locator(".rig-verdict")).not.toContainText("Guessed");
   rmSync(folder, { recursive: true });

@@ -5,8 +5,10 @@ import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Page } from "@playwright/test";
 import { expect, test } from "./lab";
-import { matrixFile, pair } from "./rig";
+import { reportHtml } from "../../pkg/rig-report.js";
+import { matrixFile, pair, reportOf } from "./rig";
 import { openPair, put, run } from "./rigsteps";
+import { atWidths, innerWidth } from "./widths";
 
 /** A saved file as text. */
 async function saved(page: Page, button: string): Promise<string> {
@@ -53,6 +55,36 @@ test("the report begins with the page's verdict, and its command gives the same 
   expect(hashes(again.inputs)).toEqual(expect.arrayContaining(hashes(numbers.inputs)));
   for (const hash of hashes(numbers.inputs)) expect(report).toContain(hash);
   expect(lab.complaints).toEqual([]);
+});
+
+test("no matrix covers the table of unknowns or is cut, on a screen or on A4", async ({ page }) => {
+  const report = reportOf("off", ["told"], ["frame 1"]);
+  const told = { ...report.estimate, translation: [-0.12345, 0.0123, 0.03] };
+  await page.setContent(reportHtml(report, [], { calibrations: { told } }));
+  /** Cells beyond the window, cells under a matrix, and matrices wider than their boxes. */
+  const faults = () =>
+    page.evaluate(() => {
+      const all = (selector: string) =>
+        [...document.querySelectorAll(selector)].filter((each) => each.checkVisibility());
+      const matrices = all(".extrinsics pre");
+      const cells = all(".unknowns :is(td, th)").map((each) => ({ each, box: each.getBoundingClientRect() }));
+      const isUnder = (box: DOMRect) =>
+        matrices
+          .map((matrix) => matrix.getBoundingClientRect())
+          .some((it) => box.right > it.left && box.left < it.right && box.bottom > it.top && box.top < it.bottom);
+      return [
+        ...cells.filter(({ box }) => box.right > window.innerWidth || isUnder(box)).map(({ each }) => each.textContent),
+        ...matrices.filter((each) => each.scrollWidth > each.clientWidth).map(() => "a matrix is cut"),
+      ];
+    });
+  await expect(page.locator(".extrinsics pre")).toHaveCount(2);
+  await atWidths(page, [390, 768, 769, 800, 1024, 1280], async (width) => {
+    expect(await faults(), `at ${width} px`).toEqual([]);
+    expect(await innerWidth(page)).toBeLessThanOrEqual(width);
+  });
+  await page.emulateMedia({ media: "print" });
+  // A4 without its margins of 8 mm, at 96 px to the inch.
+  await atWidths(page, [733], async () => expect(await faults(), "on A4").toEqual([]));
 });
 
 test("a check waits for files that are still being read, because one may be its calibration", async ({ lab, page }) => {

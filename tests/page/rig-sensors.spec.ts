@@ -31,7 +31,7 @@ test("a common sensor gives missing intrinsics, which stay a guess in the verdic
   await expect(depth(page).locator(".rig-camera-numbers")).toContainText("fx 131.25, fy 131.25, cx 79.50, cy 59.50 px");
   await page.getByRole("button", { name: "Confirm", exact: true }).click();
   await run(page);
-  await expect(page.locator(".rig-word")).toHaveText("Looks right, see warnings");
+  await expect(page.locator(".rig-word")).toHaveText("Undecided, see warnings");
   await expect(page.locator(".rig-verdict")).toContainText(
     "The depth camera's parameters are published figures of a sensor (Kinect for Xbox 360), which is a guess",
   );

@@ -146,11 +146,11 @@ test("a verdict comes with its numbers, curves, shares and advice", async ({ lab
   await expect(page.getByRole("row", { name: /frame 1 50 %/ })).toBeVisible();
   // The curve about y covers a narrow interval, and its minimum over all cues lies outside. Along z the minimum lies inside.
   const curve = (title: string) => page.locator(".rig-curves figure", { hasText: title });
-  await expect(curve("Rotation about y")).toContainText("your calibration at 2.04°");
+  await expect(curve("Rotation about y")).toContainText(/“.+” at 2\.04°/);
   await expect(curve("Rotation about y")).toContainText("the minimum lies outside this interval");
   await expect(curve("Shift along z")).not.toContainText("outside this interval");
   await expect(page.locator(".rig-placement")).toHaveText(
-    /^Best fit: The depth camera sits 50\.0 mm to the right of, 3\.0 mm behind and 2\.0 mm below the colour camera, rotated by 0\.00°\. It puts 87 % of the depth points onto the image\. Your calibration puts it \d+\.\d mm from there, rotated by \d+\.\d\d°\.$/,
+    /^Best fit: The depth camera sits 50\.0 mm to the right of, 3\.0 mm behind and 2\.0 mm below the colour camera, rotated by 0\.00°\. It puts 87 % of the depth points onto the image\. “.+” puts it \d+\.\d mm from there, rotated by \d+\.\d\d°\.$/,
   );
   expect(lab.complaints).toEqual([]);
 });
@@ -210,7 +210,7 @@ test("without a calibration there is an estimate only, and what was guessed is s
   await step(page, "Verdict").click();
   await expect(page.getByText("have changed since this verdict")).toBeVisible();
   await page.getByRole("button", { name: "Run again" }).click();
-  await expect(page.locator(".rig-word")).toHaveText("Looks right, see warnings");
+  await expect(page.locator(".rig-word")).toHaveText("Undecided, see warnings");
   // After a right calibration, the existing choice is kept.
   await expect(page.getByLabel("Calibration", { exact: true })).toHaveValue("pasted");
   const download = page.waitForEvent("download");
@@ -403,7 +403,7 @@ test("what a reader warned of caps the verdict, and is what to do next", async (
   await page.getByLabel("Or paste it in any of these formats").fill("1 0 0 0.02\n0 1 0 0\n0 0 1 0\n0 0 0 1");
   await page.getByRole("button", { name: "Add what I pasted" }).click();
   await page.getByRole("button", { name: "Run the check" }).locator("visible=true").click();
-  await expect(page.locator(".rig-word")).toHaveText("Looks right, see warnings");
+  await expect(page.locator(".rig-word")).toHaveText("Undecided, see warnings");
   const card = page.locator(".rig-verdict");
   await expect(card).toContainText("depth_0001.png: Depths of 8 bits");
   await expect(card).toContainText("frame 2: its depth map is 80×60 px, not 160×120 px");

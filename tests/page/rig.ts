@@ -65,7 +65,7 @@ export function reportOf(
   const candidate = (i: number) => ({
     verdict: i === 0 ? verdict : ("off" as const),
     code: overlap < 0.15 ? ("little-overlap" as const) : ("off-target" as const),
-    reason: `It is ${2 + i}.04 degrees off about y.`,
+    reason: `It is ${2 + i}.04 degrees off about y; the limit is 3.5 px.`,
     offDegrees: 2.04 + i,
     offMillimetres: 1.2,
     offAxes: [0, 2.04 + i, 0, 0, 0, 1.2] as [number, number, number, number, number, number],
@@ -80,7 +80,7 @@ export function reportOf(
     code: codes[verdict],
     reason:
       verdict === "off"
-        ? "It is 2.04 degrees off about y."
+        ? "It is 2.04 degrees off about y; the limit is 3.5 px."
         : verdict === "undecided"
           ? "All of the scene lies on one plane."
           : "It agrees with all frames.",
@@ -122,23 +122,24 @@ export function reportOf(
 }
 
 /**
- * The check answers with this report after some progress; the worker handles everything else. "never" keeps the check waiting, "unsent"
+ * The check answers with this report after some progress; the worker handles everything else. `more` replaces members of the report. "never" keeps the check waiting, "unsent"
  * the frames before it; "dead" is a worker that ignores all messages from a check on.
  */
 export async function answerChecks(
   page: Page,
   verdict: CheckReport["verdict"] | "never" | "unsent" | "dead",
   overlap?: number,
+  more: Partial<CheckReport> = {},
 ): Promise<void> {
   const source = `${reportOf.toString()}`;
   await page.addInitScript(
-    ({ source, verdict, axes, overlap }) => {
+    ({ source, verdict, axes, overlap, more }) => {
       const report = new Function("AXES", `return ${source}`)(axes) as (
         verdict: string,
         candidates: string[],
         frames: string[],
         overlap?: number,
-      ) => unknown;
+      ) => object;
       const send = Worker.prototype.postMessage;
       let frames: string[] = [];
       let dead: Worker | undefined;
@@ -156,11 +157,12 @@ export async function answerChecks(
         setTimeout(() => say({ share: 0.4, message: "aligning depth edges" }));
         if (verdict !== "never" && verdict !== "dead")
           setTimeout(
-            () => say({ answer: report(verdict, Object.keys(message.candidates ?? {}), frames, overlap) }),
+            () =>
+              say({ answer: { ...report(verdict, Object.keys(message.candidates ?? {}), frames, overlap), ...more } }),
             20,
           );
       };
     },
-    { source, verdict, axes: [...AXES], overlap },
+    { source, verdict, axes: [...AXES], overlap, more },
   );
 }

@@ -8,10 +8,15 @@ import "uplot/dist/uPlot.min.css";
 import type { CheckReport } from "../../pkg/index.js";
 import { ink, make } from "../dom";
 import { decimals, short } from "../draw/numbers";
+import type { Run } from "./rig";
 import { CUES } from "./verdict";
 
 type Sensitivity = CheckReport["sensitivity"][number];
 type Axis = Sensitivity["axis"];
+
+/** Said where it happens, because the verdict and the intervals would seem to contradict each other. */
+const CORRELATED =
+  "The six unknowns are correlated: a calibration can be excluded although each of its six values lies within its own 95 % interval.";
 
 const axes: Record<Axis, { title: string; unit: string }> = {
   rx: { title: "Rotation about x (up and down)", unit: "°" },
@@ -21,6 +26,7 @@ const axes: Record<Axis, { title: string; unit: string }> = {
   ty: { title: "Shift along y (up and down)", unit: "mm" },
   tz: { title: "Shift along z (forwards and backwards)", unit: "mm" },
 };
+const AXES = Object.keys(axes) as Axis[];
 const tokens: Record<string, string> = {
   shading: "series-1",
   edges: "series-3",
@@ -35,19 +41,27 @@ const WITHIN = 1.96;
 export class SensitivityCharts {
   readonly #keys = make("p", { class: "rig-curve-keys" });
   readonly #figures = make("div", { class: "rig-curves" });
-  readonly element = make("div", { class: "rig-column" }, this.#keys, this.#figures);
+  readonly #correlated = make("p", { class: "rig-correlated soft", hidden: true }, CORRELATED);
+  readonly element = make("div", { class: "rig-column" }, this.#keys, this.#correlated, this.#figures);
   #plots: uPlot[] = [];
   #observers: ResizeObserver[] = [];
   #shown: readonly Sensitivity[] = [];
   #covariance: readonly number[] = [];
   /** The calibration being checked, relative to the estimate, by axis. */
   #checked: readonly number[] = [];
+  /** Its name. */
+  #name = "";
 
-  show({ sensitivity, covariance, candidates }: CheckReport, isGiven: boolean): void {
+  show({ report: { sensitivity, covariance, candidates }, estimateOnly }: Run): void {
     if (this.#shown === sensitivity) return;
     this.#shown = sensitivity;
     this.#covariance = covariance;
-    this.#checked = (isGiven && Object.values(candidates)[0]?.offAxes) || [];
+    const [[name = "", found] = []] = estimateOnly ? [] : Object.entries(candidates);
+    this.#name = name;
+    this.#checked = found?.offAxes ?? [];
+    const isExcluded = found?.verdict === "off" && this.#checked.length > 0;
+    const isInside = this.#checked.every((off, k) => Math.abs(off) <= certainty(covariance, AXES[k] ?? "rx"));
+    this.#correlated.hidden = !(isExcluded && isInside);
     this.#build();
   }
 
@@ -68,7 +82,7 @@ export class SensitivityCharts {
       key("ink", "all together"),
     );
     this.#figures.replaceChildren();
-    for (const axis of Object.keys(axes) as Axis[]) {
+    for (const axis of AXES) {
       const curves = this.#shown.filter((each) => each.axis === axis && each.offsets.length > 1);
       if (curves.length > 0) this.#chart(axis, curves);
     }
@@ -77,20 +91,26 @@ export class SensitivityCharts {
   #chart(axis: Axis, curves: readonly Sensitivity[]): void {
     const { title, unit } = axes[axis];
     const { xs, lines, total } = lossesOf(curves);
-    const best = total.indexOf(Math.min(...total));
+    const best = minimumOf(xs, total);
     const place = xs[best] ?? 0;
     const reach = certainty(this.#covariance, axis);
     const inside: [number, number] = [Math.max(xs[0] ?? 0, -reach), Math.min(xs.at(-1) ?? 0, reach)];
     const [digits, gap] = unit === "mm" ? [1, " "] : [2, ""];
     const box = make("div", { class: "chart" });
     const amount = (value: number) => `${decimals(value, digits)}${gap}${unit}`;
-    const checked = this.#checked[(Object.keys(axes) as Axis[]).indexOf(axis)];
+    const checked = this.#checked[AXES.indexOf(axis)];
+    const beyond = checked === undefined ? 0 : Number(checked > (xs.at(-1) ?? 0)) - Number(checked < (xs[0] ?? 0));
+    const isAtEnd = best === 0 || best === xs.length - 1;
     const words = [
-      `Minimum at ${amount(place)}; ± ${amount(reach)} (95 %)`,
-      ...(isOutside(xs, best, reach)
-        ? ["the minimum lies outside this interval, so do not trust it for this axis"]
-        : []),
-      ...(checked === undefined ? [] : [`your calibration at ${amount(checked)}`]),
+      `Minimum at ${amount(place)}${isAtEnd ? " or beyond" : ""}; ± ${amount(reach)} (95 %)`,
+      ...(isAtEnd
+        ? ["the minimum lies at the end of the chart, so do not trust it for this axis"]
+        : isOutside(xs, best, reach)
+          ? ["the minimum lies outside this interval, so do not trust it for this axis"]
+          : []),
+      ...(checked === undefined
+        ? []
+        : [`“${this.#name}” at ${amount(checked)}${beyond === 0 ? "" : ", beyond the end of the chart (arrow)"}`]),
     ].join("; ");
     this.#figures.append(
       make(
@@ -132,7 +152,8 @@ export class SensitivityCharts {
           drawClear: [(plot) => band(plot, inside)],
           draw: [
             (plot) => mark(plot, place, total[best] ?? 0),
-            (plot) => checked !== undefined && triangle(plot, Math.max(xs[0] ?? 0, Math.min(xs.at(-1) ?? 0, checked))),
+            (plot) =>
+              checked !== undefined && (beyond === 0 ? triangle(plot, checked) : arrow(plot, beyond, amount(checked))),
           ],
         },
       },
@@ -164,9 +185,18 @@ function lossesOf(curves: readonly Sensitivity[]): {
 
 /** Half width of the 95 % interval, in degrees or millimetres, from the covariance, which includes errors that the cues share. */
 function certainty(covariance: readonly number[], axis: Axis): number {
-  const index = (Object.keys(axes) as Axis[]).indexOf(axis);
+  const index = AXES.indexOf(axis);
   const sigma = Math.sqrt(Math.max(0, covariance[7 * index] ?? 0));
   return WITHIN * sigma * (index < 3 ? 180 / Math.PI : 1000);
+}
+
+/** The place of the smallest loss. Of equal ones it is the nearest to the estimate, so that a flat curve has no minimum at its end. */
+function minimumOf(xs: readonly number[], losses: readonly number[]): number {
+  const least = Math.min(...losses);
+  return losses.reduce(
+    (best, loss, i) => (loss === least && (best < 0 || Math.abs(xs[i] ?? 0) < Math.abs(xs[best] ?? 0)) ? i : best),
+    -1,
+  );
 }
 
 /** Whether the minimum lies outside the interval by more than one step of the offsets, which are too coarse for a finer test. */
@@ -175,7 +205,25 @@ function isOutside(xs: readonly number[], best: number, reach: number): boolean 
   return before > reach || after < -reach;
 }
 
-/** Marks an offset on the axis; one beyond the curve's ends is marked at the end. */
+/** An arrow at the end of the axis with the offset that lies beyond it, to the left or to the right. */
+function arrow({ ctx, bbox }: uPlot, side: number, words: string): void {
+  const [size, row] = [6 * devicePixelRatio, bbox.top + bbox.height];
+  const tip = side < 0 ? bbox.left : bbox.left + bbox.width;
+  ctx.save();
+  ctx.fillStyle = ink("ink");
+  ctx.beginPath();
+  ctx.moveTo(tip, row - size);
+  ctx.lineTo(tip - 1.6 * side * size, row - 2 * size);
+  ctx.lineTo(tip - 1.6 * side * size, row);
+  ctx.fill();
+  ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+  ctx.textAlign = side < 0 ? "left" : "right";
+  ctx.textBaseline = "middle";
+  ctx.fillText(words, tip - 2.2 * side * size, row - size);
+  ctx.restore();
+}
+
+/** Marks an offset on the axis. */
 function triangle({ ctx, bbox, valToPos }: uPlot, x: number): void {
   const [column, row, size] = [valToPos(x, "x", true), bbox.top + bbox.height, 6 * devicePixelRatio];
   ctx.save();

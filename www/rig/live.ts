@@ -4,6 +4,7 @@ import type { Topic } from "./recordings";
 import type { Assembly } from "./protocol";
 import { type Session, wasCancelled } from "./session";
 import { type Item, type RigState, messageOf } from "./state";
+import { whole } from "./words";
 
 /** Largest number of views that are taken; more views of one rig add little. */
 const MOST = 10;
@@ -150,8 +151,8 @@ export class Live {
     });
     const { run } = this.#rig;
     if (!run) return;
-    const [first] = Object.values(run.report.candidates);
-    const verdict = run.estimateOnly ? "estimated" : (first?.verdict ?? "undecided");
+    const { verdict: capped, code } = whole(run);
+    const verdict = run.estimateOnly ? "estimated" : code === "doubtful" ? code : capped;
     this.steps.push({ views: this.views, verdict, ...run.report.health });
   }
 

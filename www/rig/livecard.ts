@@ -12,6 +12,7 @@ const VERDICTS: Record<string, string> = {
   consistent: "consistent",
   off: "off",
   undecided: "undecided so far",
+  doubtful: "undecided, see warnings",
   estimated: "estimated, no calibration given",
 };
 

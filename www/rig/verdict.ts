@@ -1,12 +1,12 @@
 /** The result of the check in words: the verdict, what to do next, the tables. */
 
-import type { CandidateReport, CheckReport } from "../../pkg/index.js";
+import type { CandidateReport, CheckReport, Warning } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
 import { make } from "../dom";
 import { svg } from "./parts";
-import { isUsable, placement } from "./placement";
+import { isReplacement, isUncertain, isUsable, placement } from "./placement";
 import type { Run } from "./rig";
-import { verdictReason, verdictWords, whole } from "./words";
+import { limitOf, resultsOf, verdictReason, verdictWords, whole } from "./words";
 
 export type Tone = "good" | "wrong" | "open";
 
@@ -66,9 +66,8 @@ export const ending = (run: Run): string => `The check is done. Verdict: ${headl
 const LITTLE = 0.3;
 
 const SWAPPED = "Check step 1: colour image and depth map seem to be swapped.";
-/** The advice for each warning, the most useful first. */
+/** The advice for each warning about the files, the most useful first. */
 const ADVICE: readonly [code: string, advice: string][] = [
-  ["fits-inverted", "Invert the calibration in step 2 and check again: it seems to be the inverse."],
   [
     "eight-bits",
     "Record the depth map itself with 16 bits: a colour-coded or 8-bit picture of it is too coarse for a calibration.",
@@ -81,22 +80,56 @@ const ADVICE: readonly [code: string, advice: string][] = [
   ],
 ];
 
-/** What to do next, the most useful first. */
+/** The calibration that a warning of the check is about. */
+const aboutOf = ({ field = "" }: Warning): string => field.replace(/^candidates\./, "");
+
+/** Advice about calibrations that fit inverted: first about the one of the verdict, then about others by their names. */
+function invert({ report }: Run, name: string): { own: string[]; others: string[] } {
+  const names = new Set(report.warnings.filter(({ code }) => code === "fits-inverted").map(aboutOf));
+  const own = names.delete(name) ? [`Invert “${name}” in step 2 and check again: it seems to be the inverse.`] : [];
+  const others = [...names].map(
+    (other) =>
+      `About “${other}”, which this verdict is not about: invert it in step 2 and check again, because it seems to be an inverse.`,
+  );
+  return { own, others };
+}
+
+/** What to do with the best fit if the calibration is off. */
+function replace(run: Run, name: string): string {
+  const { report, diagonal } = run;
+  const { pixels, interval: range } = report.health;
+  if (isReplacement(run))
+    return `Save the calibration found here, use it instead of “${name}”, and check it with new frames.`;
+  if (!isUncertain(run))
+    return `Check the calibration found here with new frames before you use it instead of “${name}”.`;
+  const more = report.next?.message ?? "Add frames of a scene with edges near and far.";
+  return `Do not use the best fit instead of “${name}”: it is itself too uncertain, ${px(pixels, diagonal)} (95 %: ${interval(range, diagonal)}; the limit is ${limitOf(report)} px). ${more}`;
+}
+
+/** What to do next, the most useful first. Advice on a calibration names it, because there may be several. */
 export function advise(run: Run): string[] {
   const { report, plans, estimateOnly, guessed, doubts, candidates } = run;
-  const list: string[] = [];
   const codes = new Set([...doubts, ...report.warnings].map(({ code }) => code));
   const name = Object.keys(candidates)[0] ?? "";
-  for (const [code, advice] of ADVICE) if (codes.has(code)) list.push(advice);
+  const { own, others } = invert(run, name);
+  const list = [...own, ...ADVICE.flatMap(([code, advice]) => (codes.has(code) ? [advice] : []))];
   const isOpen = report.verdict === "undecided" && Object.values(report.candidates)[0]?.verdict === "undecided";
   const confirm = guessed.length > 0 ? [`Confirm the guess in step 1: ${guessed.join("; ")}.`] : [];
   if (!isOpen) list.push(...confirm);
-  if (!estimateOnly && report.code === "misread") list.push("Convert the file as the verdict says, and check again.");
-  else if (!estimateOnly && report.verdict === "off")
-    list.push("Save the calibration found here, use it instead of yours, and check it with new frames.");
+  if (!estimateOnly && report.code === "misread")
+    list.push(
+      `Find out how the file of “${name}” was written. If in the convention that the verdict names, convert it and check again; otherwise treat “${name}” as off.`,
+    );
+  else if (!estimateOnly && report.verdict === "off") list.push(replace(run, name));
+  // Such a warning keeps the verdict from "consistent".
+  if (report.code === "doubtful") list.push(...others.splice(0));
   if (!isUsable(run))
     list.push(
       "Check that image and depth map show the same scene: the best fit leaves most of the depth map outside the image.",
+    );
+  else if (estimateOnly && isUncertain(run))
+    list.push(
+      `The best fit is too uncertain to use: ${px(report.health.pixels, run.diagonal)} (95 %: ${interval(report.health.interval, run.diagonal)}; the limit is ${limitOf(report)} px).`,
     );
   else if (estimateOnly) list.push("Save the calibration found here, or add your own in step 2 to have it checked.");
   if (plans.length < 3 && run.isLidar)
@@ -109,21 +142,27 @@ export function advise(run: Run): string[] {
         ? "Add two more frames, with the object turned by about 30° each time."
         : "Add another frame, with the object turned by about 30°.",
     );
-  list.push(...(report.next ? [report.next.message] : []), ...(isOpen ? confirm : []));
+  const proposal = report.next?.message ?? "";
+  if (proposal && !list.some((advice) => advice.includes(proposal))) list.push(proposal);
+  if (isOpen) list.push(...confirm);
   const mean = 1 / Math.max(1, report.frames.length);
   for (const { name, share, note } of report.frames)
     if (report.frames.length > 1 && share < LITTLE * mean)
       list.push(`Retake ${name}: it contributes little (${(100 * share).toFixed(0)} %)${note ? `, ${note}` : ""}.`);
   if (!estimateOnly && report.verdict === "consistent")
     list.push(`Keep “${name}”, and check again after the rig has been moved, knocked or heated.`);
-  return report.verdict === "consistent" && !estimateOnly && guessed.length + doubts.length === 0
-    ? [...list.slice(-1), ...list.slice(0, -1)]
+  list.push(...others);
+  const keep = list.findIndex((advice) => advice.startsWith("Keep “"));
+  return keep > 0 && guessed.length + doubts.length === 0
+    ? [...list.slice(keep, keep + 1), ...list.slice(0, keep), ...list.slice(keep + 1)]
     : list;
 }
 
 export function card(run: Run): HTMLElement {
   const { word, tone, sentence } = headline(run);
   const [next = ""] = advise(run);
+  const names = run.estimateOnly ? [] : Object.keys(run.candidates);
+  const [count, [name]] = [names.length, names];
   const all = [
     ...run.guessed.map((what) => `Guessed: ${what}.`),
     ...[...run.doubts, ...run.report.warnings].map(({ message }) => message),
@@ -137,6 +176,9 @@ export function card(run: Run): HTMLElement {
       {},
       make("h3", { class: "rig-word", tabindex: "-1" }, word),
       make("p", {}, sentence),
+      ...(count > 1
+        ? [make("p", { class: "rig-subject soft" }, `This is about “${name}”, the first of ${count} calibrations.`)]
+        : []),
       figures(run),
       make("p", { class: "rig-placement soft" }, placement(run)),
       make("p", { class: "rig-next" }, make("strong", {}, "Next: "), next),
@@ -148,7 +190,7 @@ export function card(run: Run): HTMLElement {
 /** The main numbers of the calibration being checked. */
 function figures({ report, estimateOnly, diagonal }: Run): HTMLElement {
   const { health } = report;
-  const [first] = Object.values(report.candidates);
+  const [[name, first] = []] = Object.entries(report.candidates);
   const figure = (value: string, words: string) => make("div", {}, make("dt", {}, words), make("dd", {}, value));
   const found = figure(
     px(health.pixels, diagonal),
@@ -162,10 +204,7 @@ function figures({ report, estimateOnly, diagonal }: Run): HTMLElement {
       `${decimals(first.offDegrees, 2)}° and ${decimals(first.offMillimetres, 1)} mm`,
       "from the best fit; shift at the centre of the scene",
     ),
-    figure(
-      px(first.pixels, diagonal),
-      `expected error of your calibration (95 %: ${interval(first.interval, diagonal)})`,
-    ),
+    figure(px(first.pixels, diagonal), `expected error of “${name}” (95 %: ${interval(first.interval, diagonal)})`),
     found,
   );
 }
@@ -181,9 +220,10 @@ function whisker(value: number, [low, high]: [number, number], most: number): HT
   );
 }
 
-export function candidatesTable({ report, estimateOnly, diagonal }: Run): HTMLElement {
+export function candidatesTable(run: Run): HTMLElement {
+  const { report, estimateOnly, diagonal } = run;
   const { health } = report;
-  const list = Object.entries(report.candidates);
+  const list = resultsOf(whole(run));
   const most = 1.05 * Math.max(health.interval[1], ...list.map(([, { interval }]) => interval[1]), 1e-6);
   const row = (
     name: string,

@@ -7,7 +7,7 @@ import type { SensitivityCharts } from "./curves";
 import { Overlay } from "./overlay";
 import { choose, labelled, press, saveFile } from "./parts";
 import type { PoseFormat } from "./protocol";
-import { isUsable } from "./placement";
+import { isSaved, isUncertain, isUsable } from "./placement";
 import { messageOf, type Rig, type Run } from "./rig";
 import { wasCancelled } from "./session";
 import { candidatesTable, card, CUES, ending, nextCard, sharesCard } from "./verdict";
@@ -59,7 +59,7 @@ export class VerdictStep {
       make(
         "p",
         { class: "soft" },
-        "Loss of log likelihood when the calibration found is moved. A narrow valley means a certain result; a flat one means that this scene does not constrain the axis. The dot marks the minimum of all cues together, the band the 95 % interval of the result, the triangle your calibration.",
+        "Loss of log likelihood when the calibration found is moved. The band, not the valley, is the 95 % interval of the result: neighbouring pixels share their errors, so the band is wider than the valley. A flat valley means that this scene does not constrain the axis. The dot marks the minimum of all cues together, the triangle the calibration checked; an arrow at the end of the axis means that it lies beyond.",
       ),
     );
     this.#results.append(
@@ -167,7 +167,7 @@ export class VerdictStep {
     const { SensitivityCharts } = await import("./curves");
     if (!this.#curves) this.#curvesBox.append((this.#curves = new SensitivityCharts()).element);
     this.#curvesBox.hidden = run.report.sensitivity.length === 0;
-    this.#curves.show(run.report, !run.estimateOnly);
+    this.#curves.show(run);
   }
 
   #cueChoice(): HTMLElement {
@@ -194,6 +194,12 @@ export class VerdictStep {
   #out(run: Run): HTMLElement {
     const note = make("p", { class: "rig-error", role: "alert" });
     const remark = make("p", { class: "soft", role: "status" });
+    const isLeftOut = isUsable(run) && !isSaved(run);
+    const leftOut = make(
+      "p",
+      { class: "soft" },
+      "The calibration found is not offered here, because it is too uncertain to use.",
+    );
     const attempt = (action: () => Promise<void>) => async () => {
       note.textContent = remark.textContent = "";
       await action().catch(
@@ -201,7 +207,7 @@ export class VerdictStep {
       );
     };
     const poses = [
-      ...(isUsable(run) ? [{ value: "", label: "found" }] : []),
+      ...(isSaved(run) ? [{ value: "", label: isUncertain(run) ? "found (too uncertain to use)" : "found" }] : []),
       ...(run.estimateOnly ? [] : Object.keys(run.candidates)).map((name) => ({ value: name, label: name })),
     ];
     // The visitor's calibration is the initial choice, unless the verdict is "off".
@@ -211,7 +217,7 @@ export class VerdictStep {
     const wished = poses.find(({ value }) => value === wish.pose)?.value;
     const which = choose(
       poses,
-      wished ?? (isKept ? (Object.keys(run.candidates)[0] ?? "") : ""),
+      wished ?? (isKept ? Object.keys(run.candidates)[0] : poses[0]?.value) ?? "",
       (pose) => (wish.pose = pose),
     );
     const format = choose(formats, wish.format, (format) => (wish.format = format as PoseFormat));
@@ -261,6 +267,7 @@ export class VerdictStep {
       { class: "rig-card" },
       make("h3", {}, "Export"),
       make("div", { class: "rig-row rig-bottom" }, labelled("Calibration", which), labelled("Format", format), save),
+      ...(isLeftOut ? [leftOut] : []),
       make(
         "div",
         { class: "rig-row rig-bottom" },

@@ -18,7 +18,7 @@ use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use bimodal_stereo::{CalibrationCheck, CheckReport, CheckVerdict};
+use bimodal_stereo::{CalibrationCheck, CheckReport, CheckVerdict, RigView};
 use clap::Parser;
 use serde_json::json;
 use sha2::{Digest, Sha256};
@@ -107,13 +107,14 @@ fn check(arguments: &Arguments, terminal: &mut Terminal<'_>) -> std::result::Res
         cameras: arguments.cameras.iter().cloned().chain(cameras).collect(),
         except: arguments.calibration.clone(),
     };
-    let RigFolder { frames, readings: read, warnings: doubts, .. } = read_rig_folder(&arguments.folder, &options)?;
+    let RigFolder { mut frames, readings: read, warnings: doubts, .. } = read_rig_folder(&arguments.folder, &options)?;
     if frames.is_empty() {
         let first = doubts.first().map(|warning| format!(": {warning}")).unwrap_or_default();
         let folder = &arguments.folder;
         let reason = format!("it contains no readable pair of a colour image and a depth map{first}");
         return Err(Problem::file(folder, reason).into());
     }
+    call(&mut frames);
     let run = CalibrationCheck::new(frames, poses, &arguments.cues).map_err(|error| Problem::of_check(&error))?;
     let report = finished(run, terminal)?;
     let mut all = Warnings::default();
@@ -131,6 +132,15 @@ fn check(arguments: &Arguments, terminal: &mut Terminal<'_>) -> std::result::Res
         CheckVerdict::Off => 1,
         CheckVerdict::Undecided => 2,
     })
+}
+
+/// Names frames whose names are numbers alone, as on the page: "0: 48 % .." would read like a number.
+fn call(frames: &mut [RigView]) {
+    for (index, frame) in frames.iter_mut().enumerate() {
+        if !frame.name.is_empty() && frame.name.bytes().all(|byte| byte.is_ascii_digit()) {
+            frame.name = format!("frame {} ({})", index + 1, frame.name);
+        }
+    }
 }
 
 /// Runs the check to its end with a progress bar.

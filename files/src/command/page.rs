@@ -77,7 +77,7 @@ fn card(checked: &Checked) -> String {
         word(checked.verdict),
         title_of(checked.verdict),
         escaped(name),
-        escaped(&checked.reason),
+        escaped(&checked.sentence()),
         measure(checked.report.health.pixels, " px"),
         span(&checked.report.health),
         percent(checked.report.overlap),
@@ -96,15 +96,16 @@ fn warnings(checked: &Checked) -> String {
 
 fn candidates(checked: &Checked) -> String {
     let row = |one: &CandidateReport| {
+        let (verdict, reason) = checked.result(one);
         vec![
             one.name.clone(),
-            title_of(one.verdict).into(),
+            title_of(verdict).into(),
             measure(one.off_degrees, "\u{b0}"),
             measure(one.off_millimetres, " mm"),
             measure(one.health.pixels, " px"),
             span(&one.health),
             measure(one.probability, ""),
-            one.reason.to_string(),
+            reason,
         ]
     };
     let head =

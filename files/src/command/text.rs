@@ -45,7 +45,7 @@ fn table(rows: &[[String; 6]]) -> Vec<String> {
 
 /// The verdict with its reason.
 pub fn headline(checked: &Checked) -> String {
-    format!("{}: {}", word(checked.verdict).to_uppercase(), checked.reason)
+    format!("{}: {}", word(checked.verdict).to_uppercase(), checked.sentence())
 }
 
 pub fn text(checked: &Checked) -> String {
@@ -55,7 +55,7 @@ pub fn text(checked: &Checked) -> String {
     rows.extend(report.candidates.iter().map(|one| {
         [
             plain(&one.name),
-            word(one.verdict).into(),
+            word(checked.result(one).0).into(),
             format!("{} deg", short(one.off_degrees)),
             format!("{} mm", short(one.off_millimetres)),
             pixels(&one.health),

@@ -6,7 +6,7 @@ use bimodal_stereo::{Lens, Pinhole};
 use regex_lite::Regex;
 
 use super::calibration::{NamedCamera, Reason};
-use super::numbers::{fixed, shown};
+use super::numbers::{DIGITS, brief, fixed, shown};
 use crate::read::MOST_SIDE;
 use crate::warning::Warnings;
 
@@ -87,13 +87,17 @@ fn doubts(raw: &RawCamera, size: Option<[usize; 2]>, label: &str, warnings: &mut
             "principal-point",
             format!(
                 "{label} has its principal point outside its image ({}, {} of {width}x{height}).",
-                shown(cx),
-                shown(cy)
+                brief(cx, DIGITS),
+                brief(cy, DIGITS)
             ),
         ),
         None if cx <= 0.0 || cy <= 0.0 => warnings.add(
             "principal-point",
-            format!("{label} has the principal point {}, {}, which is outside any image.", shown(cx), shown(cy)),
+            format!(
+                "{label} has the principal point {}, {}, which is outside any image.",
+                brief(cx, DIGITS),
+                brief(cy, DIGITS)
+            ),
         ),
         _ => {}
     }
@@ -102,7 +106,7 @@ fn doubts(raw: &RawCamera, size: Option<[usize; 2]>, label: &str, warnings: &mut
             "focal-length-normalised",
             format!(
                 "{label} has a focal length of {}, which looks normalised by the image's size; pixels are needed.",
-                shown(fx)
+                brief(fx, DIGITS)
             ),
         );
     }

@@ -35,6 +35,9 @@ pub fn shown(value: f64) -> String {
     ryu_js::Buffer::new().format(value).to_owned()
 }
 
+/// Significant digits of numbers in messages: a file's own digits, of which there may be sixteen, hide the value.
+pub const DIGITS: usize = 5;
+
 /// This many significant digits, without trailing zeros.
 pub fn brief(value: f64, digits: usize) -> String {
     match precise(value, digits).parse() {

@@ -4,7 +4,7 @@ import type { NamedCamera } from "../types.js";
 import { lensNamed } from "./lenses.js";
 import { MOST_SIDE } from "./limits.js";
 import type { Numbers } from "./numbers.js";
-import { type ReaderWarning, warning } from "../warnings.js";
+import { type ReaderWarning, digits, warning } from "../warnings.js";
 
 /** A camera as a file states it, before it is checked. */
 export interface RawCamera {
@@ -86,22 +86,26 @@ export function cameraOf(raw: RawCamera, warnings: ReaderWarning[]): NamedCamera
     warnings.push(
       warning(
         "principal-point",
-        `${label} has its principal point outside its image (${cx}, ${cy} of ${size.width}x${size.height}).`,
+        `${label} has its principal point outside its image (${digits(cx)}, ${digits(cy)} of ${size.width}x${size.height}).`,
         { cx, cy },
       ),
     );
   if (size === undefined && (cx <= 0 || cy <= 0))
     warnings.push(
-      warning("principal-point", `${label} has the principal point ${cx}, ${cy}, which is outside any image.`, {
-        cx,
-        cy,
-      }),
+      warning(
+        "principal-point",
+        `${label} has the principal point ${digits(cx)}, ${digits(cy)}, which is outside any image.`,
+        {
+          cx,
+          cy,
+        },
+      ),
     );
   if (fx < 2 || fy < 2)
     warnings.push(
       warning(
         "focal-length-normalised",
-        `${label} has a focal length of ${fx}, which looks normalised by the image's size; pixels are needed.`,
+        `${label} has a focal length of ${digits(fx)}, which looks normalised by the image's size; pixels are needed.`,
         { fx, fy },
       ),
     );

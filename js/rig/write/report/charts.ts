@@ -74,7 +74,9 @@ function says({ points, best, from, to }: Curve, unit: string): string {
     return `not constrained from ${brief(first)} to ${brief(last)}${unit === "°" ? unit : ` ${unit}`}`;
   const least = from === undefined ? `below ${brief(first)}` : digits(from, 2);
   const most = to === undefined ? `above ${brief(last)}` : digits(to, 2);
-  return `${measure(best, unit, 2)} (${least} to ${most})`;
+  // Beyond the end of the range the likelihood may rise further.
+  const where = best === first || best === last ? "the minimum is at the end of the range or beyond, " : "";
+  return `${where}${measure(best, unit, 2)} (${least} to ${most})`;
 }
 
 function panel(title: string, unit: string, lines: readonly Line[]): Markup {

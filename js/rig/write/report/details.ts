@@ -6,7 +6,7 @@ import { type Markup, html } from "./markup.js";
 import { digits, measure, percent, probability, span } from "./numbers.js";
 import { cell, section, table } from "./parts.js";
 import { cueName } from "./sections.js";
-import { verdictOf, wordOf } from "./words.js";
+import { resultsOf, verdictOf, wordOf } from "./words.js";
 
 const CANDIDATE_COLUMNS = [
   "Calibration",
@@ -31,8 +31,8 @@ function candidateRow(name: string, found: CandidateReport): Markup {
   return html`<tr><th scope="row">${name}</th>${values.map((value, index) => cell(CANDIDATE_COLUMNS[index + 1] ?? "", value))}</tr>`;
 }
 
-function candidateTable({ candidates }: Checked): Markup | undefined {
-  const rows = Object.entries(candidates).map(([name, found]) => candidateRow(name, found));
+function candidateTable(report: Checked): Markup | undefined {
+  const rows = resultsOf(report).map(([name, found]) => candidateRow(name, found));
   if (rows.length === 0) return undefined;
   return section(
     "Calibrations compared",

@@ -108,22 +108,39 @@ const COLUMNS = ["Unknown", "Candidate", "Found", "Difference", "95\u202f% inter
 /** The angle of the shorter way around. */
 const around = (degrees: number): number => degrees - 360 * Math.round(degrees / 360);
 
-/** Candidate, found value and difference, with the interval of the found value. */
-function unknownTable(report: Checked, given: Calibration | undefined): Markup {
+/** Each unknown: candidate, found value and difference, with half of the found value's interval. */
+function unknownsOf(report: Checked, given: Calibration | undefined) {
   const found = valuesOf(report.estimate);
   const sigmas = sigmasOf(report);
   const candidate = given && valuesOf(given);
-  const rows = UNKNOWNS.map(({ name, unit, decimals }, k) => {
+  return UNKNOWNS.map((unknown, k) => {
     const [value = NaN, half = NaN] = [found[k], SIGMAS_95 * (sigmas[k] ?? NaN)];
     const off = (candidate?.[k] ?? NaN) - value;
-    const difference = k < 3 ? around(off) : off;
+    return { ...unknown, value, half, given: candidate?.[k], difference: k < 3 ? around(off) : off };
+  });
+}
+type Unknown = ReturnType<typeof unknownsOf>[number];
+
+const CORRELATED =
+  "The six unknowns are correlated: a calibration can be excluded although each of its six values lies within its own 95\u202f% interval.";
+
+/** Said where it happens, because the verdict and the table would seem to contradict each other. */
+function correlated({ candidates }: Checked, unknowns: readonly Unknown[]): Markup | undefined {
+  const isOff = Object.values(candidates)[0]?.verdict === "off";
+  return isOff && unknowns.every(({ difference, half }) => Math.abs(difference) <= half)
+    ? html`<p>${CORRELATED}</p>`
+    : undefined;
+}
+
+function unknownTable(unknowns: readonly Unknown[]): Markup {
+  const rows = unknowns.map(({ name, unit, decimals, value, half, given, difference }) => {
     const show = (number: number) => fixed(number, decimals);
     const range = Number.isFinite(half) ? `${show(value - half)} to ${show(value + half)}` : show(half);
     const isOutside = Math.abs(difference) > half;
     const cells = [
-      ...(candidate ? [show(candidate[k] ?? NaN)] : ["\u2013"]),
+      given === undefined ? "\u2013" : show(given),
       show(value),
-      candidate ? (isOutside ? html`<strong>${show(difference)}</strong>` : show(difference)) : "\u2013",
+      given !== undefined ? (isOutside ? html`<strong>${show(difference)}</strong>` : show(difference)) : "\u2013",
       range,
       unit,
     ];
@@ -144,9 +161,10 @@ function matrix({ rotation: r, translation: t }: Placed): Markup {
 
 export function extrinsicsSection(report: Checked, options: ReportOptions): Markup {
   const given = inQuestion(report, options);
+  const unknowns = unknownsOf(report, given);
   return section(
     "Extrinsics",
-    html`<div class="extrinsics"><div>${unknownTable(report, given)}<p class="soft">Rotation: R = Rx Ry Rz. Interval: that of the value found. Bold: the candidate lies outside it.</p></div>
+    html`<div class="extrinsics"><div>${unknownTable(unknowns)}${correlated(report, unknowns)}<p class="soft">Rotation: R = Rx Ry Rz. Interval: that of the value found. Bold: the candidate lies outside it.</p></div>
 <div>${given && html`<h3>Candidate</h3>${matrix(given)}`}<h3>Found</h3>${matrix(report.estimate)}<p class="soft">P_colour = R P_depth + t, metres; x right, y down, z forward.</p></div></div>`,
   );
 }

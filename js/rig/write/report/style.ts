@@ -36,7 +36,7 @@ tbody th{font-weight:600}
 .shares th:first-child{width:40%}.shares td.number{width:4rem}.shares .bars{width:9rem}.shares th .soft{font-weight:400}
 .overlay{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,20rem),1fr));gap:.75rem;margin-top:.5rem}
 .overlay figcaption{color:var(--soft);font-size:.8125rem}.edge{fill:none;stroke:#ff3cbe;stroke-width:2;stroke-linecap:round}
-.extrinsics{display:grid;grid-template-columns:minmax(0,3fr) minmax(0,2fr);gap:0 1.5rem}.extrinsics h3{margin:0}.extrinsics pre{margin:.25rem 0 .5rem;font-size:.6875rem;padding:.5rem}
+.extrinsics{display:flex;flex-wrap:wrap;gap:0 1.5rem}.extrinsics>div{flex:1 1 auto;min-width:0;max-width:100%}.extrinsics p{contain:inline-size}.extrinsics h3{margin:0}.extrinsics pre{margin:.25rem 0 .5rem;font-size:.6875rem;padding:.5rem}
 .inputs em{font-style:normal;color:var(--wrong)}.shell{white-space:pre-wrap}
 summary{cursor:pointer;font-weight:600}
 .unknowns td,.unknowns th{white-space:nowrap;overflow-wrap:normal}
@@ -65,7 +65,7 @@ svg{display:block;width:100%;height:auto;font:11px system-ui,sans-serif}
 .shares thead{display:none}.shares tr{display:grid;grid-template-columns:1fr auto;gap:0 1rem;border-top:1px solid var(--line);padding:.5rem 0}
 .shares th,.shares td{border:0;padding:0}.shares th:first-child,.shares td,.shares td.number,.shares .bars{width:auto}.shares td:nth-child(n+3){grid-column:1/-1}
 .shares td[data-column]::before{content:attr(data-column) " ";color:var(--soft)}
-.card{flex-direction:column;align-items:flex-start;gap:.5rem}.extrinsics{grid-template-columns:minmax(0,1fr)}
+.card{flex-direction:column;align-items:flex-start;gap:.5rem}.extrinsics>div{flex-basis:100%}.extrinsics pre{font-size:clamp(.5625rem,2.45vw,.6875rem)}
 }
 @page{margin:8mm}
 @media print{
@@ -87,4 +87,4 @@ section:has(.apart){break-before:page}details:not([open]),footer{display:none}
 `;
 
 /** Hash of STYLE, base64; a test checks it and prints the correct one. */
-export const STYLE_SHA256 = "SUqUAdltWLq4XFhI4Pv7wSjHk4HoMZV/nDM7GaZr13g=";
+export const STYLE_SHA256 = "mhWyX5FOw31zKnSqJ3Pl3Gwf8yoB0U1gkphVQcoAJM0=";

@@ -1,5 +1,5 @@
 /** The verdict and the place of a camera in words, for the report and for the page beside it. */
-import type { CheckReport, CheckVerdict } from "../../../types/index.js";
+import type { CandidateReport, CheckReport, CheckVerdict } from "../../../types/index.js";
 import { degreesOf, isOfScan } from "../../formats/poses.js";
 import type { Checked } from "./contents.js";
 
@@ -12,7 +12,6 @@ const WORDS: Readonly<Record<CheckVerdict, string>> = { consistent: "Consistent"
 export const verdictOf = (verdict: CheckVerdict): CheckVerdict =>
   Object.hasOwn(WORDS, verdict) ? verdict : "undecided";
 
-/** The verdict of one candidate, regardless of warnings. */
 export const wordOf = (verdict: CheckVerdict): string => WORDS[verdictOf(verdict)];
 
 const firstOf = ({ candidates }: Pick<Checked, "candidates">) => Object.values(candidates)[0];
@@ -21,18 +20,38 @@ const firstOf = ({ candidates }: Pick<Checked, "candidates">) => Object.values(c
 const isCapped = (report: Checked): boolean =>
   report.verdict === "undecided" && firstOf(report)?.verdict === "consistent";
 
+/** The candidates by name for tables: warnings cap the verdict on the first one, so that its row says the same as the line above. */
+export const resultsOf = (report: Checked): [name: string, found: CandidateReport][] =>
+  Object.entries(report.candidates).map(([name, found], index) =>
+    index === 0 && isCapped(report)
+      ? [name, { ...found, verdict: report.verdict, reason: verdictReason(report) }]
+      : [name, found],
+  );
+
 /** The verdict in a few words; without a calibration in question there is only an estimate. */
 export function verdictWords(report: Checked, isEstimate = false): string {
   if (isEstimate) return "Estimated";
-  if (isCapped(report)) return "Looks right, see warnings";
-  return wordOf(report.verdict) + (report.verdict === "off" && report.warnings.length > 0 ? ", see warnings" : "");
+  const isWarned = isCapped(report) || (report.verdict === "off" && report.warnings.length > 0);
+  return wordOf(report.verdict) + (isWarned ? ", see warnings" : "");
 }
 
 /**
  * The reason in a sentence. If warnings cap the verdict, the candidate's own reason is given, because the warnings are listed beside it.
  */
-export const verdictReason = (report: Checked): string =>
-  (isCapped(report) ? firstOf(report)?.reason : undefined) ?? report.reason;
+export function verdictReason(report: Checked): string {
+  const own = isCapped(report) ? firstOf(report)?.reason : undefined;
+  return own === undefined ? report.reason : `It would be consistent without the warnings. ${own}`;
+}
+
+/**
+ * The largest error that passes, pixels of the colour image. A report has it only in its sentences, and sentences that compare no error
+ * with it leave it out.
+ */
+export function limitOf({ reason, candidates }: Pick<CheckReport, "reason" | "candidates">): number | undefined {
+  const sentences = [reason, ...Object.values(candidates).map((each) => each.reason)];
+  const limits = sentences.flatMap((words) => /\blimit (?:is|of) (\d+(?:\.\d+)?) px/.exec(words)?.[1] ?? []);
+  return limits[0] === undefined ? undefined : Number(limits[0]);
+}
 
 const SIDES = [
   ["to the right of", "to the left of"],
