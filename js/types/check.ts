@@ -171,6 +171,8 @@ export interface CheckReport {
     /** 95 % interval of `pixels`. */
     interval: [number, number];
   };
+  /** Largest expected error that passes, pixels of the colour image. */
+  tolerance: number;
   /** The results for the candidates by name; the one being checked comes first. */
   candidates: Record<string, CandidateReport>;
   /** Each cue's share of the evidence, 0 to 1, and its sharpness: the inverse of its sigma in pixels of the colour image. */

@@ -56,6 +56,7 @@ impl CalibrationCheck {
             covariance: metric.fixed_view::<POSE, POSE>(0, 0).into(),
             focal: self.scene.focal_is_free.then(|| [state.focal, metric[(FOCAL, FOCAL)].sqrt()]),
             health,
+            tolerance: judge.tolerance(),
             candidates,
             cues: CueReport::all(findings, frame.pixel),
             frames: FrameReport::all(&self.scene, findings),
@@ -248,13 +249,16 @@ const fn is_open(reason: &CheckReason) -> bool {
     matches!(reason, CheckReason::TooClose(_) | CheckReason::Unconstrained { .. } | CheckReason::GuessedCamera { .. })
 }
 
-/// The verdict on the first candidate. A warning caps it, because the inputs may have been misread.
+/// The verdict on the first candidate. A warning caps it, because the inputs may have been misread, unless it is about another
+/// candidate.
 fn first_verdict(candidates: &[CandidateReport], warnings: &[Warning], health: Health) -> (CheckVerdict, CheckReason) {
     let (verdict, reason) = match candidates.first() {
         Some(first) => (first.verdict, first.reason.clone()),
         None => (CheckVerdict::Undecided, CheckReason::NoCandidate { pixels: health.pixels }),
     };
-    match (warnings.first(), verdict) {
+    let others = candidates.iter().skip(1).map(|other| format!("candidates.{}", other.name));
+    let others: Vec<String> = others.collect();
+    match (warnings.iter().find(|warning| !others.contains(&warning.field)), verdict) {
         (Some(warning), CheckVerdict::Consistent) => {
             let reason = CheckReason::Doubtful { warning: Box::new(warning.clone()), reason: Box::new(reason) };
             (CheckVerdict::Undecided, reason)

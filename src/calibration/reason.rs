@@ -162,7 +162,7 @@ impl fmt::Display for CheckReason {
             Self::NoCandidate { pixels } => {
                 write!(f, "No candidate was given; the estimate is good to {} px.", Fixed(*pixels, 1))
             }
-            Self::Doubtful { warning, reason } => write!(f, "Looks right, see warnings: {warning} {reason}"),
+            Self::Doubtful { warning, reason } => write!(f, "It would be consistent without this warning: {warning} {reason}"),
         }
     }
 }
@@ -351,7 +351,10 @@ mod tests {
         let doubtful =
             CheckReason::Doubtful { warning: Box::new(warning), reason: Box::new(CheckReason::NoPoseOnImage) };
         assert_eq!(doubtful.code(), "doubtful");
-        assert!(doubtful.to_string().starts_with("Looks right, see warnings: frame 1: "), "{doubtful}");
+        assert!(
+            doubtful.to_string().starts_with("It would be consistent without this warning: frame 1: "),
+            "{doubtful}"
+        );
     }
 
     #[test]

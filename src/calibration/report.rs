@@ -66,6 +66,8 @@ pub struct CheckReport {
     pub focal: Option<[f64; 2]>,
     /// Expected error of the estimate.
     pub health: Health,
+    /// Largest expected error that passes, pixels of the colour image.
+    pub tolerance: f64,
     /// Reports on the candidates, in the order given.
     #[cfg_attr(feature = "serde", serde(serialize_with = "super::serialised::candidates_by_name"))]
     pub candidates: Vec<CandidateReport>,

@@ -135,7 +135,11 @@ describe("a rig before boxes", () => {
 
   for (const [view, reading, message] of [
     ["depth", "depth-mirrored", /^Off as given, but it fits far better once the depth map is mirrored left to right/],
-    ["image", "image-quarter-turn", /^Off as given, but it fits far better once the colour image is rotated by 90 degrees/],
+    [
+      "image",
+      "image-quarter-turn",
+      /^Off as given, but it fits far better once the colour image is rotated by 90 degrees/,
+    ],
   ])
     test(`a view that was stored otherwise is named in the verdict: ${reading}`, LONG, async () => {
       const { from: _, place: __, ...stored } = rotated(frame[view], view === "image" ? 1 : 0, view === "depth");

@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { after, describe, test } from "node:test";
 import init, { sampleRig } from "../../pkg/index.js";
 import { shellCheck } from "../../pkg/rig-report.js";
-import { limitOf, resultsOf, verdictReason, verdictWords } from "../../pkg/rig-words.js";
+import { resultsOf, verdictReason, verdictWords } from "../../pkg/rig-words.js";
 import { reportHtml, writePose } from "../../pkg/rig-write.js";
 import { writePng } from "../../pkg/write.js";
 import { inRoot } from "../../scripts/shell.mjs";
@@ -162,14 +162,6 @@ describe("the verdict in words", () => {
     assert.deepEqual(resultsOf(report()), Object.entries(report().candidates));
   });
 
-  test("states the limit in its sentences", () => {
-    const saying = (reason) => ({ reason: "", candidates: { a: { reason } } });
-    assert.equal(limitOf(saying("Its error is 1.2 px (95 %: 0.4 to 1.9); the limit is 3.5 px.")), 3.5);
-    assert.equal(limitOf(saying("the interval ends above the limit of 10.5 px because")), 10.5);
-    assert.equal(limitOf(saying("It puts no points onto the image.")), undefined);
-    assert.equal(limitOf({ ...saying(""), reason: "the limit is 7 px." }), 7);
-  });
-
   test("has its number at once, and that of the best fit without a calibration", () => {
     const first = (page) =>
       harmless(page)
@@ -310,8 +302,7 @@ describe("the command", () => {
       assert.ok(text.includes(name.replaceAll("'", "&#39;")) && text.includes(sha256), name);
     for (const words of ["cues edges", "unit 0.001 m", `Node ${process.version}`, "wasm SHA-256", "Before, with"])
       assert.ok(text.includes(words), words);
-    // The page compares errors with the limit that the check's own sentences state, 3.5 px of an image 640 wide.
-    assert.equal(limitOf(kept), Number((3.5 * Math.max(1, image.width / 640)).toFixed(1)));
+    assert.equal(kept.tolerance, 3.5 * Math.max(1, image.width / 640));
     const found = unknowns(page).map(({ values }) => values[1]);
     valuesOf(kept.estimate).forEach((value, k) => assert.ok(Math.abs(value - found[k]) < 0.006, `${k}`));
   });

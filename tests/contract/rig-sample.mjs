@@ -39,6 +39,7 @@ export const report = () => ({
     k % 7 === 0 ? [0.002, 0.0025, 0.004, 0.0011, 0.0013, 0.0048][k / 7] ** 2 : 1e-8 * Math.sin(k),
   ),
   health: { pixels: 0.84, interval: [0.52, 1.31] },
+  tolerance: 3.5,
   candidates: {
     "factory.yaml": {
       verdict: "off",

@@ -79,15 +79,6 @@ test("an estimate that is too uncertain says so, also where it is saved", async 
   expect(lab.complaints).toEqual([]);
 });
 
-test("a best fit whose limit is not known is to be checked before its use", async ({ lab, page }) => {
-  const { candidates } = reportOf("off", ["told"], []);
-  const told = { ...candidates.told, reason: "It puts no points onto the image." } as (typeof candidates)[string];
-  await answerChecks(page, "off", undefined, { reason: told.reason, candidates: { told } });
-  await check(page);
-  await expect(next(page)).toContainText("Check the calibration found here with new frames before you use it");
-  expect(lab.complaints).toEqual([]);
-});
-
 test("a calibration beyond a curve is marked, and a minimum at its end is a warning", async ({ lab, page }) => {
   const { candidates, sensitivity } = reportOf("off", ["told"], []);
   const told = { ...candidates.told, offAxes: [9.5, 2.04, 0, 0, 0, -80] } as (typeof candidates)[string];

@@ -101,6 +101,7 @@ export function reportOf(
     middle: [0, 0, 1.1],
     covariance,
     health: { pixels: 0.42, interval: [0.21, 0.83] },
+    tolerance: 3.5,
     candidates: Object.fromEntries(candidates.map((name, i) => [name, candidate(i)])),
     cues: {
       edges: { share: 0.55, sharpness: 1.9 },

@@ -3,7 +3,7 @@
 import { decimals } from "../draw/numbers";
 import { degreesOf, inverse, poseOf, times } from "./poses";
 import type { Run } from "./rig";
-import { limitOf, placeInWords } from "./words";
+import { placeInWords } from "./words";
 
 /** The place of the depth camera in the best fit, the overlap, and the distance of the checked calibration's camera from that place. */
 export function placement({ report: { estimate, overlap }, candidates, estimateOnly, isLidar }: Run): string {
@@ -22,14 +22,7 @@ export const isUsable = ({ report }: Run): boolean =>
   !Object.values(report.candidates).some(({ code }) => UNFIT.includes(code));
 
 /** Whether the error of the best fit may exceed the largest one that passes, so that it may be no better than what it would replace. */
-export function isUncertain({ report }: Run): boolean {
-  const limit = limitOf(report);
-  return limit !== undefined && report.health.interval[1] > limit;
-}
-
-/** Whether the best fit may be offered in place of a calibration that is off. It may not if the report states no limit to compare it with. */
-export const isReplacement = (run: Run): boolean =>
-  isUsable(run) && limitOf(run.report) !== undefined && !isUncertain(run);
+export const isUncertain = ({ report }: Run): boolean => report.health.interval[1] > report.tolerance;
 
 /** Whether the best fit may be saved. Beside a calibration it would be taken for a better one. */
 export const isSaved = (run: Run): boolean => isUsable(run) && (run.estimateOnly || !isUncertain(run));

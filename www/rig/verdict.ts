@@ -4,9 +4,9 @@ import type { CandidateReport, CheckReport, Warning } from "../../pkg/index.js";
 import { decimals } from "../draw/numbers";
 import { make } from "../dom";
 import { svg } from "./parts";
-import { isReplacement, isUncertain, isUsable, placement } from "./placement";
+import { isUncertain, isUsable, placement } from "./placement";
 import type { Run } from "./rig";
-import { limitOf, resultsOf, verdictReason, verdictWords, whole } from "./words";
+import { resultsOf, verdictReason, verdictWords, whole } from "./words";
 
 export type Tone = "good" | "wrong" | "open";
 
@@ -98,12 +98,10 @@ function invert({ report }: Run, name: string): { own: string[]; others: string[
 function replace(run: Run, name: string): string {
   const { report, diagonal } = run;
   const { pixels, interval: range } = report.health;
-  if (isReplacement(run))
-    return `Save the calibration found here, use it instead of “${name}”, and check it with new frames.`;
   if (!isUncertain(run))
-    return `Check the calibration found here with new frames before you use it instead of “${name}”.`;
+    return `Save the calibration found here, use it instead of “${name}”, and check it with new frames.`;
   const more = report.next?.message ?? "Add frames of a scene with edges near and far.";
-  return `Do not use the best fit instead of “${name}”: it is itself too uncertain, ${px(pixels, diagonal)} (95 %: ${interval(range, diagonal)}; the limit is ${limitOf(report)} px). ${more}`;
+  return `Do not use the best fit instead of “${name}”: it is itself too uncertain, ${px(pixels, diagonal)} (95 %: ${interval(range, diagonal)}; the limit is ${decimals(report.tolerance, 1)} px). ${more}`;
 }
 
 /** What to do next, the most useful first. Advice on a calibration names it, because there may be several. */
@@ -120,7 +118,7 @@ export function advise(run: Run): string[] {
     list.push(
       `Find out how the file of “${name}” was written. If in the convention that the verdict names, convert it and check again; otherwise treat “${name}” as off.`,
     );
-  else if (!estimateOnly && report.verdict === "off") list.push(replace(run, name));
+  else if (!estimateOnly && report.verdict === "off" && isUsable(run)) list.push(replace(run, name));
   // Such a warning keeps the verdict from "consistent".
   if (report.code === "doubtful") list.push(...others.splice(0));
   if (!isUsable(run))
@@ -129,7 +127,7 @@ export function advise(run: Run): string[] {
     );
   else if (estimateOnly && isUncertain(run))
     list.push(
-      `The best fit is too uncertain to use: ${px(report.health.pixels, run.diagonal)} (95 %: ${interval(report.health.interval, run.diagonal)}; the limit is ${limitOf(report)} px).`,
+      `The best fit is too uncertain to use: ${px(report.health.pixels, run.diagonal)} (95 %: ${interval(report.health.interval, run.diagonal)}; the limit is ${decimals(report.tolerance, 1)} px).`,
     );
   else if (estimateOnly) list.push("Save the calibration found here, or add your own in step 2 to have it checked.");
   if (plans.length < 3 && run.isLidar)

@@ -10,7 +10,6 @@ export const isBackwards = words.isBackwards as typeof Words.isBackwards;
 export const isOfCarrier = words.isOfCarrier as typeof Words.isOfCarrier;
 export const isOfScan = words.isOfScan as typeof Words.isOfScan;
 export const resultsOf = words.resultsOf as typeof Words.resultsOf;
-export const limitOf = words.limitOf as typeof Words.limitOf;
 export const verdictReason = words.verdictReason as typeof Words.verdictReason;
 export const verdictWords = words.verdictWords as typeof Words.verdictWords;
 

@@ -43,16 +43,6 @@ export function verdictReason(report: Checked): string {
   return own === undefined ? report.reason : `It would be consistent without the warnings. ${own}`;
 }
 
-/**
- * The largest error that passes, pixels of the colour image. A report has it only in its sentences, and sentences that compare no error
- * with it leave it out.
- */
-export function limitOf({ reason, candidates }: Pick<CheckReport, "reason" | "candidates">): number | undefined {
-  const sentences = [reason, ...Object.values(candidates).map((each) => each.reason)];
-  const limits = sentences.flatMap((words) => /\blimit (?:is|of) (\d+(?:\.\d+)?) px/.exec(words)?.[1] ?? []);
-  return limits[0] === undefined ? undefined : Number(limits[0]);
-}
-
 const SIDES = [
   ["to the right of", "to the left of"],
   ["below", "above"],
