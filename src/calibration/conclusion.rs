@@ -144,7 +144,7 @@ impl CalibrationCheck {
             let own = judge.judge(name, state, &read, None);
             (own.verdict != CheckVerdict::Off && density > least).then_some((density, own.health, reading))
         };
-        let fitting = readings_of(&self.scene, &candidate.pose).filter_map(likely);
+        let fitting = readings_of(&self.scene, &candidate.pose).into_iter().filter_map(likely);
         if let Some((_, health, reading)) = fitting.max_by(|a, b| a.0.total_cmp(&b.0)) {
             report.reason = CheckReason::Misread { reading, margin: Margin { health, tolerance: judge.tolerance() } };
         }
@@ -256,9 +256,11 @@ fn first_verdict(candidates: &[CandidateReport], warnings: &[Warning], health: H
         Some(first) => (first.verdict, first.reason.clone()),
         None => (CheckVerdict::Undecided, CheckReason::NoCandidate { pixels: health.pixels }),
     };
-    let others = candidates.iter().skip(1).map(|other| format!("candidates.{}", other.name));
-    let others: Vec<String> = others.collect();
-    match (warnings.iter().find(|warning| !others.contains(&warning.field)), verdict) {
+    let is_of_another = |warning: &&Warning| {
+        let name = warning.field.strip_prefix("candidates.");
+        candidates.iter().skip(1).any(|other| Some(other.name.as_str()) == name)
+    };
+    match (warnings.iter().find(|warning| !is_of_another(warning)), verdict) {
         (Some(warning), CheckVerdict::Consistent) => {
             let reason = CheckReason::Doubtful { warning: Box::new(warning.clone()), reason: Box::new(reason) };
             (CheckVerdict::Undecided, reason)

@@ -8,9 +8,7 @@
 //! l = sum over discontinuities of log(e / 2 L + (1 - e) sum_k p_k N(u + d - u_k; s)),
 //! p_k = a_k / sum a, s^2 = sigma^2 + g^2 / 12,
 //!
-//! where u moves with the pose. From each term its mean over all shifts of the edges in the window is subtracted, so that
-//! discontinuities without an edge in the image gain nothing on average, however much texture or how narrow a mask is
-//! there. The near surface ends anywhere within the gap g between two samples of the depth map,
+//! where u moves with the pose. The near surface ends anywhere within the gap g between two samples of the depth map,
 //! so that a coarse map weighs less than a fine one. The check never decides which edge belongs to which discontinuity,
 //! and a discontinuity in front of texture has little weight. The levels go from wide windows on a blurred image to
 //! narrow ones. Each round finds the edges anew and takes a Gauss-Newton step with the responsibilities (expectation
@@ -57,24 +55,6 @@ struct Profile {
     weight: f64,
     tile: u32,
     edges: Vec<(f64, f64)>,
-}
-
-impl Profile {
-    /// Mean log likelihood over all shifts of the edges, in steps of about one standard deviation. The window is taken as
-    /// a circle.
-    fn by_chance(&self, background: f64, peak: f64) -> f64 {
-        let width = 2.0 * self.window;
-        let steps = (width / self.sigma).ceil();
-        let at = |shift: f64| {
-            let density = |&(offset, share): &(f64, f64)| {
-                let turned = if offset + shift > self.window { width } else { 0.0 };
-                let error = (offset + shift - turned) / self.sigma;
-                share * (-0.5 * error * error).exp()
-            };
-            (1.0 + peak / background * self.edges.iter().map(density).sum::<f64>()).ln()
-        };
-        (0..steps as usize).map(|step| at((step as f64 + 0.5) / steps * width)).sum::<f64>() / steps
-    }
 }
 
 /// The depth discontinuities of one frame with their profiles, for one state.
@@ -179,7 +159,7 @@ impl EdgeField {
             bounds += weight * bound;
             own += weight * (bound - second / whole / (sigma * sigma) + slope * slope);
             let share = &mut shares[profile.tile as usize];
-            share.value += weight * ((whole / background).ln() - profile.by_chance(background, peak));
+            share.value += weight * (whole / background).ln();
             share.gradient += profile.row * (weight * slope);
             add_square(&mut share.curvature, &profile.row, weight * bound);
         }
@@ -258,46 +238,4 @@ fn edges(planes: &Planes, start: [f64; 2], normal: [f64; 2], window: f64, blur: 
     let total: f64 = edges.iter().map(|edge| edge.1).sum();
     edges.iter_mut().for_each(|edge| edge.1 /= total);
     Some(edges)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::numeric::random::Random;
-
-    fn field(edges: Vec<Vec<(f64, f64)>>) -> EdgeField {
-        let discontinuity = Discontinuity { index: 0, pixel: [0.0; 2], normal: [1.0, 0.0], gap: 1.0, in_gap: 1.0 };
-        let profile = |edges| Profile {
-            discontinuity,
-            row: Vector::zeros(),
-            sigma: 1.3,
-            window: WIDEST,
-            weight: 1.0,
-            tile: 0,
-            edges,
-        };
-        EdgeField { profiles: edges.into_iter().map(profile).collect() }
-    }
-
-    /// Mean log likelihood of a discontinuity.
-    fn mean(field: &EdgeField) -> f64 {
-        let mut shares = vec![Share::none()];
-        field.evidence(&mut shares);
-        shares[0].value / field.len() as f64
-    }
-
-    #[test]
-    fn discontinuities_without_an_edge_gain_nothing_however_much_texture_is_there() {
-        let mut random = Random::new(3, 0);
-        for count in [0_usize, 1, 3, 12] {
-            let mut texture = |at: Option<f64>| -> Vec<(f64, f64)> {
-                let anywhere = (0..count).map(|_| WIDEST * (2.0 * random.uniform() - 1.0));
-                at.into_iter().chain(anywhere).map(|offset| (offset, 1.0 / (count + at.iter().len()) as f64)).collect()
-            };
-            let by_chance = mean(&field((0..4000).map(|_| texture(None)).collect()));
-            let matched = mean(&field((0..4000).map(|_| texture(Some(0.5))).collect()));
-            assert!(by_chance.abs() < 0.04, "{count}: {by_chance}");
-            assert!(matched > 0.2, "{count}: {matched}");
-        }
-    }
 }

@@ -139,11 +139,6 @@ impl Reading {
         self.one_of(pose).into_iter().collect()
     }
 
-    /// The poses of a candidate in all conventions.
-    pub(super) fn all_poses(pose: &Similarity) -> impl Iterator<Item = (Self, Similarity)> {
-        Self::POSES.into_iter().flat_map(|reading| reading.of(pose).into_iter().map(move |pose| (reading, pose)))
-    }
-
     /// The pose that this reading approaches if it shrinks a part of the candidate: the one without this part.
     pub(super) fn limit(self, read: &Similarity) -> Option<Similarity> {
         match self {

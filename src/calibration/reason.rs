@@ -57,7 +57,7 @@ pub enum CheckReason {
     },
     /// Undecided: the interval holds errors within the tolerance and errors beyond it.
     TooClose(Margin),
-    /// Off: neither the candidate nor any pose that was tried puts points onto the image.
+    /// Off: neither the candidate nor any pose near it puts points onto the image.
     NoPoseOnImage,
     /// Undecided: the estimate puts few of the depth points onto the image.
     LittleOverlap {
@@ -121,14 +121,18 @@ impl fmt::Display for CheckReason {
             Self::WithinTolerance(margin) => write!(f, "Its error is {margin}; {}.", margin.limit()),
             Self::NothingAgainst { margin, shown } => write!(
                 f,
-                "Nothing contradicts it, and an error above {} px would show in this scene. Its error is {margin}; the interval ends above \
+                "Nothing contradicts it, and an error above {} px would show. Its error is {margin}; the interval ends above \
                  the limit of {} px because it includes the uncertainty of the estimate.",
                 Fixed(*shown, 1),
                 Fixed(margin.tolerance, 1)
             ),
             Self::OffTarget { margin, offset } => write!(f, "Off by about {offset}: {margin}; {}.", margin.limit()),
             Self::Misread { reading, margin } => {
-                write!(f, "Off as given, but it fits far better {reading}: its error is then {margin}; {}.", margin.limit())
+                write!(
+                    f,
+                    "Off as given, but it fits far better {reading}: its error is then {margin}; {}.",
+                    margin.limit()
+                )
             }
             Self::NoPointsOnImage => {
                 f.write_str("Off, or read in a wrong convention: it puts no points onto the image.")
@@ -150,19 +154,19 @@ impl fmt::Display for CheckReason {
             Self::TooClose(margin) => {
                 write!(f, "Its error is too uncertain to decide: {margin}; {}.", margin.limit())
             }
-            Self::NoPoseOnImage => f.write_str(
-                "Off, or read in a wrong convention: neither it nor any pose that was tried puts points onto the image.",
-            ),
-            Self::LittleOverlap { percent } => write!(
-                f,
-                "The best fit puts only {} % of the depth points onto the image, too few to rely on.",
-                Fixed(*percent, 0)
-            ),
+            Self::NoPoseOnImage => {
+                f.write_str("Off, or read in a wrong convention: no pose near it puts points onto the image.")
+            }
+            Self::LittleOverlap { percent } => {
+                write!(f, "The best fit puts only {} % of the depth points onto the image.", Fixed(*percent, 0))
+            }
             Self::NoEvidence => f.write_str("None of the chosen cues finds anything to compare in this scene."),
             Self::NoCandidate { pixels } => {
                 write!(f, "No candidate was given; the estimate is good to {} px.", Fixed(*pixels, 1))
             }
-            Self::Doubtful { warning, reason } => write!(f, "It would be consistent without this warning: {warning} {reason}"),
+            Self::Doubtful { warning, reason } => {
+                write!(f, "It would be consistent without this warning: {warning} {reason}")
+            }
         }
     }
 }
@@ -363,7 +367,7 @@ mod tests {
         let reason = CheckReason::NothingAgainst { margin, shown: 3.1 };
         assert_eq!(
             reason.to_string(),
-            "Nothing contradicts it, and an error above 3.1 px would show in this scene. Its error is 2.7 px at the scene's depth (95 %: \
+            "Nothing contradicts it, and an error above 3.1 px would show. Its error is 2.7 px at the scene's depth (95 %: \
              1.0 to 4.8); the interval ends above the limit of 3.5 px because it includes the uncertainty of the estimate."
         );
     }

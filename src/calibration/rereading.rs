@@ -16,14 +16,20 @@ const SURVIVORS: [usize; 4] = [6, 3, 2, 1];
 
 /// The poses of a candidate in all conventions. A reading that shrinks a rotation or translation until the scene hardly shows it is left
 /// out: between cameras with nearly the same pose, it would fit whatever is wrong with the candidate.
-pub(super) fn readings_of(scene: &Scene, pose: &Similarity) -> impl Iterator<Item = (Reading, Similarity)> {
-    Reading::all_poses(pose).filter(move |(reading, read)| {
-        let is_shown = |limit| {
-            let (read, limit) = (State::at(*read), State::at(limit));
-            scene.units(&read).between(&read, &limit).norm() > TOLERANCE * scene.scale
-        };
-        reading.limit(read).is_none_or(is_shown)
-    })
+pub(super) fn readings_of(scene: &Scene, pose: &Similarity) -> Vec<(Reading, Similarity)> {
+    let mut readings = vec![];
+    for reading in Reading::POSES {
+        for read in reading.of(pose) {
+            let differs = |limit| {
+                let (read, limit) = (State::at(read), State::at(limit));
+                scene.units(&read).between(&read, &limit).norm() > TOLERANCE * scene.scale
+            };
+            if reading.limit(&read).is_none_or(differs) {
+                readings.push((reading, read));
+            }
+        }
+    }
+    readings
 }
 
 /// The readings under way.
@@ -48,7 +54,7 @@ impl Rereading {
             let round = Round::from(state, state);
             scene.is_seen(&state).then(|| (reading, Start { round, discontinuities: vec![], score: 0.0 }))
         };
-        let starts = readings_of(scene, &candidate.pose).filter_map(start).collect();
+        let starts = readings_of(scene, &candidate.pose).into_iter().filter_map(start).collect();
         Self { optima, starts, level: 0, index: 0, planes: scene.planes(SIGMAS[0] * scene.scale) }
     }
 
@@ -90,5 +96,43 @@ impl Rereading {
         }
         optima::rank(&mut optima);
         optima
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Rotation3, Vector3};
+
+    use super::*;
+    use crate::calibration::cue::Cue;
+    use crate::calibration::frame::Frame;
+    use crate::view::{Lens, Pinhole, Size};
+
+    /// A wall at one metre, behind a lens of 600 pixels.
+    fn scene() -> Scene {
+        let camera = Pinhole { fx: 600.0, fy: 600.0, cx: 31.5, cy: 23.5, lens: Lens::None };
+        let size = Size { width: 64, height: 48 };
+        let point = |index: usize| {
+            let (column, row) = size.position(index);
+            [(column as f64 - camera.cx) / camera.fx, (row as f64 - camera.cy) / camera.fy, 1.0].map(|v| v as f32)
+        };
+        let planes = Planes { size, pixels: vec![[0.5; 3]; size.len()] };
+        let frame = Frame::new(String::new(), planes, camera, size, (0..size.len()).map(point).collect());
+        Scene::new(vec![frame], vec![Cue::Edges], false)
+    }
+
+    /// A turn and a shift that are off would vanish, too, if they were read in a smaller unit.
+    #[test]
+    fn a_reading_that_shrinks_a_pose_to_nothing_is_not_tried() {
+        let scene = scene();
+        let count = |radians: f64, metres: f64, reading: Reading| {
+            let rotation = Rotation3::new(Vector3::x() * radians).into_inner();
+            let pose = Similarity { scale: 1.0, rotation, translation: Vector3::x() * metres };
+            readings_of(&scene, &pose).iter().filter(|(found, _)| *found == reading).count()
+        };
+        // Two degrees that were read as two radians, with up to four whole turns, and 50 mm that were read as 50 m.
+        assert_eq!((count(2.0, 0.05, Reading::Degrees), count(0.09, 50.0, Reading::Millimetres)), (9, 1));
+        // A turn by five degrees, and 50 mm.
+        assert_eq!((count(0.09, 0.05, Reading::Degrees), count(0.09, 0.05, Reading::Millimetres)), (8, 0));
     }
 }
