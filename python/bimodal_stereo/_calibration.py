@@ -116,6 +116,7 @@ class CheckReport:
     ``focal``: ratio of the estimated focal length to the assumed one, and the sigma of its logarithm, if no colour
     camera was given.
     ``pixels``, ``interval``: expected reprojection error of the estimate, and its 95 % interval.
+    ``tolerance``: largest expected error that passes, pixels of the colour image.
     ``next``: the frame to take next, or ``None`` without depth edges or if the colour camera is a guess.
     """
 
@@ -131,6 +132,7 @@ class CheckReport:
     focal: Optional[tuple[float, float]]
     pixels: float
     interval: tuple[float, float]
+    tolerance: float
     candidates: Mapping[str, CandidateReport]
     cues: Mapping[str, CueReport]
     frames: Sequence[FrameReport]

@@ -86,6 +86,7 @@ def test_a_check_agrees_with_the_truth_and_not_with_an_error(rig):
     assert check.reason == check.candidates["shifted"].reason
     assert check.candidates["true"].verdict == "consistent"
     assert check.candidates["shifted"].off_millimetres == pytest.approx(50, abs=10)
+    assert check.tolerance == 3.5
     assert seen[-1] == (1.0, "done") and all(message for _, message in seen)
     assert check.covariance.shape == (6, 6) and (np.linalg.eigvalsh(check.covariance) > 0).all()
     assert sum(cue.share for cue in check.cues.values()) == pytest.approx(1)
