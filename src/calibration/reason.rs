@@ -122,7 +122,7 @@ impl fmt::Display for CheckReason {
             Self::NothingAgainst { margin, shown } => write!(
                 f,
                 "Nothing contradicts it, and an error above {} px would show. Its error is {margin}; the interval ends above \
-                 the limit of {} px because it includes the uncertainty of the estimate.",
+                 the limit of {} px because the estimate is uncertain, too.",
                 Fixed(*shown, 1),
                 Fixed(margin.tolerance, 1)
             ),
@@ -160,7 +160,7 @@ impl fmt::Display for CheckReason {
             Self::LittleOverlap { percent } => {
                 write!(f, "The best fit puts only {} % of the depth points onto the image.", Fixed(*percent, 0))
             }
-            Self::NoEvidence => f.write_str("None of the chosen cues finds anything to compare in this scene."),
+            Self::NoEvidence => f.write_str("None of the chosen cues finds anything to compare."),
             Self::NoCandidate { pixels } => {
                 write!(f, "No candidate was given; the estimate is good to {} px.", Fixed(*pixels, 1))
             }
@@ -304,9 +304,7 @@ impl fmt::Display for Warning {
                     Ok(())
                 }
             }
-            WarningKind::RoughDepth => {
-                f.write_str("the depth map is as rough as a photograph; are the two files swapped?")
-            }
+            WarningKind::RoughDepth => f.write_str("the depth map is as rough as a photograph; are the files swapped?"),
             WarningKind::FarApart { metres } => {
                 write!(f, "its cameras are {} m apart; is the translation in millimetres?", Fixed(metres, 1))
             }
@@ -368,7 +366,7 @@ mod tests {
         assert_eq!(
             reason.to_string(),
             "Nothing contradicts it, and an error above 3.1 px would show. Its error is 2.7 px at the scene's depth (95 %: \
-             1.0 to 4.8); the interval ends above the limit of 3.5 px because it includes the uncertainty of the estimate."
+             1.0 to 4.8); the interval ends above the limit of 3.5 px because the estimate is uncertain, too."
         );
     }
 
