@@ -134,7 +134,7 @@ impl fmt::Display for CheckReason {
                     margin.limit()
                 )
             }
-            Self::NoPointsOnImage => {
+            Self::NoPointsOnImage | Self::NoPoseOnImage => {
                 f.write_str("Off, or read in a wrong convention: it puts no points onto the image.")
             }
             Self::BetweenOptima(margin) => write!(
@@ -153,9 +153,6 @@ impl fmt::Display for CheckReason {
             ),
             Self::TooClose(margin) => {
                 write!(f, "Its error is too uncertain to decide: {margin}; {}.", margin.limit())
-            }
-            Self::NoPoseOnImage => {
-                f.write_str("Off, or read in a wrong convention: no pose near it puts points onto the image.")
             }
             Self::LittleOverlap { percent } => {
                 write!(f, "The best fit puts only {} % of the depth points onto the image.", Fixed(*percent, 0))
@@ -316,8 +313,7 @@ impl fmt::Display for Warning {
             ),
             WarningKind::LensLeftOut { k1 } => write!(
                 f,
-                "Depth edges fit the image's clearly better behind a lens of k1 about {}: was the colour camera's distortion \
-                 left out?",
+                "Depth edges fit the image's clearly better behind a lens of k1 about {}: was its distortion left out?",
                 Fixed(k1, 2)
             ),
         }

@@ -78,13 +78,13 @@ h2{font-size:8.5pt;margin:0 0 .5mm}h3{font-size:7.5pt}p{margin:.3mm 0;max-width:
 .facts{gap:0 3mm;margin:.5mm 0 0}th,td{padding:.3mm 2mm .3mm 0}.warnings{padding-left:3mm}.warnings li{margin:0}
 .clamp{display:-webkit-box;-webkit-box-orient:vertical;-webkit-line-clamp:2;overflow:hidden}.subject .clamp,.many .clamp,p.clamp,figcaption.clamp{-webkit-line-clamp:1}
 figure,tr,.card,pre{break-inside:avoid}h2,h3{break-after:avoid}
-.overlay{grid-template-columns:1fr 1fr;gap:3mm;margin:0}.overlay svg{max-height:45mm}.large svg{max-height:65mm}
+.overlay{grid-template-columns:1fr 1fr;gap:3mm;margin:0}.overlay svg{max-height:40mm}.large svg{max-height:65mm}
 .panels{grid-template-columns:repeat(3,1fr);gap:.75rem}
-.scroll,pre{overflow:visible}pre{white-space:pre-wrap;padding:.5mm 1mm}.matrix{font-size:7pt}.extrinsics pre{font-size:5.5pt;margin:.3mm 0;padding:.3mm 0}.extrinsics h3{margin:0}pre.shell{font-size:6pt;margin:.5mm 0;max-height:20mm;overflow:hidden}
+.scroll,pre{overflow:visible}pre{white-space:pre-wrap;padding:.5mm 1mm}.matrix{font-size:7pt}.extrinsics{display:grid;grid-template-columns:minmax(0,3fr) minmax(0,2fr)}.extrinsics pre{font-size:5.5pt;margin:.3mm 0;padding:.3mm 0}.extrinsics h3{margin:0}pre.shell{font-size:6pt;margin:.5mm 0;max-height:20mm;overflow:hidden}
 .inputs code{font-size:5.5pt;white-space:nowrap}
 section:has(.apart){break-before:page}details:not([open]),footer{display:none}
 }
 `;
 
 /** Hash of STYLE, base64; a test checks it and prints the correct one. */
-export const STYLE_SHA256 = "mhWyX5FOw31zKnSqJ3Pl3Gwf8yoB0U1gkphVQcoAJM0=";
+export const STYLE_SHA256 = "WDIK/F7BcacxwOEtZIEIxg5AWsrLArgrxtLrMnVvXQw=";
