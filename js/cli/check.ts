@@ -74,8 +74,8 @@ async function checkCameras(cameras: NamedFile[], { readRigFile }: Modules): Pro
   }
 }
 
-/** Frames whose names are numbers alone, as on the page: "0: 48 % .." would read like a number. */
-const called = (frames: CheckFrame[]): CheckFrame[] =>
+/** Renames frames whose names are numbers alone, because "0: 48 % .." is hard to read. The number of the file stays in parentheses. */
+const namedByNumber = (frames: CheckFrame[]): CheckFrame[] =>
   frames.map((frame, index) =>
     /^\d+$/.test(frame.name ?? "") ? { ...frame, name: `frame ${index + 1} (${frame.name})` } : frame,
   );
@@ -99,7 +99,7 @@ async function checkFolder(args: Arguments): Promise<number> {
     const first = read.warnings[0] ? `: ${read.warnings[0].message}` : "";
     throw new Mistake(`${args.folder}: it contains no readable pair of a colour image and a depth map${first}`, "file");
   }
-  const frames = called(read.frames);
+  const frames = namedByNumber(read.frames);
   const given = Object.entries(candidates).map(([name, pose]) => ({ name, pose }));
   const poses = posesForClouds(given, frames, read.warnings);
   const judged = Object.fromEntries(poses.map(({ name = "", pose }) => [name, pose]));

@@ -156,7 +156,7 @@ export interface CheckReport {
   warnings: Warning[];
   /** The extrinsics that fit best, scale 1: P_colour = R P_depth + t, metres. */
   estimate: Pose;
-  /** Share of the depth points that the estimate puts onto the image, 0 to 1. Below 0.15 every verdict is "undecided". */
+  /** Share of the depth points that the estimate puts onto the image, 0 to 1. Below 0.15 no calibration is "consistent". */
   overlap: number;
   /** The centre of the scene in the colour frame, metres. */
   middle: [number, number, number];

@@ -199,7 +199,7 @@ impl CalibrationCheck {
                 report.without_evidence();
             }
             if !self.scene.is_seen(candidate) {
-                report.without_points(is_seen, self.width);
+                report.without_points(overlap >= LEAST_COMPARED_SHARE, self.width);
             } else if overlap < LEAST_COMPARED_SHARE {
                 report.with_little_overlap(overlap);
             }

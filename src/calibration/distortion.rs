@@ -25,16 +25,16 @@ pub(super) fn left_out(scene: &mut Scene, round: &Round) -> Option<f64> {
         return None;
     }
     let planes: Vec<Vec<Planes>> = SIGMAS.iter().map(|sigma| scene.planes(sigma * scene.scale)).collect();
-    // Wide windows choose the lens.
+    // Wide windows choose the term.
     let rough = TERMS.map(|term| score(scene, round, term, &planes[..1]));
     let best = TERMS[(0..TERMS.len()).max_by(|&a, &b| rough[a].total_cmp(&rough[b]))?];
     (score(scene, round, best, &planes) > score(scene, round, 0.0, &planes) + GAIN).then_some(best)
 }
 
 /// The better score of two registrations, from the estimate and from the initial pose, because a missing lens biases
-/// the estimate. `planes` are those of the first levels.
+/// the estimate. The registrations have as many levels as there are `planes`.
 fn score(scene: &mut Scene, round: &Round, term: f64, planes: &[Vec<Planes>]) -> f64 {
-    let lens = if term == 0.0 { Lens::None } else { Lens::Brown([term, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]) };
+    let lens = Lens::brown(&[term, 0.0, 0.0, 0.0]).unwrap_or(Lens::None);
     let initial = Round { state: round.initial, ..*round };
     score_from(scene, round, lens, planes).max(score_from(scene, &initial, lens, planes))
 }

@@ -57,7 +57,7 @@ pub enum CheckReason {
     },
     /// Undecided: the interval holds errors within the tolerance and errors beyond it.
     TooClose(Margin),
-    /// Off: neither the candidate nor any pose near it puts points onto the image.
+    /// Off: the candidate puts no points onto the image, and the best fit too few to rely on.
     NoPoseOnImage,
     /// Undecided: the estimate puts few of the depth points onto the image.
     LittleOverlap {

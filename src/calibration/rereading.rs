@@ -14,8 +14,8 @@ use crate::pose::Similarity;
 /// Number of readings that proceed after each level, the best by score.
 const SURVIVORS: [usize; 4] = [6, 3, 2, 1];
 
-/// The poses of a candidate in all conventions. A reading that shrinks a rotation or translation until the scene hardly shows it is left
-/// out: between cameras with nearly the same pose, it would fit whatever is wrong with the candidate.
+/// The poses of a candidate in all conventions. A reading that shrinks the rotation or translation below the tolerance is left out: if
+/// both cameras have nearly the same pose, it would fit whatever is wrong with the candidate.
 pub(super) fn readings_of(scene: &Scene, pose: &Similarity) -> Vec<(Reading, Similarity)> {
     let mut readings = vec![];
     for reading in Reading::POSES {
@@ -52,7 +52,7 @@ impl Rereading {
         let start = |(reading, pose)| {
             let state = State::at(pose);
             let round = Round::from(state, state);
-            scene.is_seen(&state).then(|| (reading, Start { round, discontinuities: vec![], score: 0.0 }))
+            scene.is_seen(&state).then(|| (reading, Start::at(round)))
         };
         let starts = readings_of(scene, &candidate.pose).into_iter().filter_map(start).collect();
         Self { optima, starts, level: 0, index: 0, planes: scene.planes(SIGMAS[0] * scene.scale) }
@@ -121,7 +121,7 @@ mod tests {
         Scene::new(vec![frame], vec![Cue::Edges], false)
     }
 
-    /// A turn and a shift that are off would vanish, too, if they were read in a smaller unit.
+    /// Read in a smaller unit, an error of the rotation or translation would vanish with it.
     #[test]
     fn a_reading_that_shrinks_a_pose_to_nothing_is_not_tried() {
         let scene = scene();
@@ -132,7 +132,7 @@ mod tests {
         };
         // Two degrees that were read as two radians, with up to four whole turns, and 50 mm that were read as 50 m.
         assert_eq!((count(2.0, 0.05, Reading::Degrees), count(0.09, 50.0, Reading::Millimetres)), (9, 1));
-        // A turn by five degrees, and 50 mm.
+        // A rotation of five degrees, and 50 mm.
         assert_eq!((count(0.09, 0.05, Reading::Degrees), count(0.09, 0.05, Reading::Millimetres)), (8, 0));
     }
 }

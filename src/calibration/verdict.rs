@@ -288,7 +288,8 @@ impl CandidateReport {
         self.reason = CheckReason::BetweenOptima(Margin { health: self.health, tolerance });
     }
 
-    /// Overrides the verdict if the candidate puts hardly any point onto the image. `is_end_seen` tells whether the best fit does.
+    /// Overrides the verdict if the candidate puts hardly any point onto the image. `is_end_seen`: the best fit puts enough points
+    /// there to be relied on.
     #[inline(never)]
     pub(super) fn without_points(&mut self, is_end_seen: bool, width: f64) {
         self.verdict = CheckVerdict::Off;

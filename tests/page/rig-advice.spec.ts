@@ -31,8 +31,8 @@ test("advice about another calibration names it and leaves the first place to th
 }) => {
   await answerChecks(page, "off", undefined, inverted("other"));
   await check(page);
-  await expect(page.locator(".rig-subject")).toHaveText("This is about “told”, the first of 2 calibrations.");
-  await expect(next(page)).toContainText("use it instead of “told”");
+  await expect(page.locator(".rig-subject")).toHaveText("This is about “given”, the first of 2 calibrations.");
+  await expect(next(page)).toContainText("use it instead of “given”");
   await expect(next(page)).not.toContainText(/invert/i);
   await expect(list(page).last()).toHaveText(
     "About “other”, which this verdict is not about: invert it in step 2 and check again, because it seems to be an inverse.",
@@ -41,9 +41,9 @@ test("advice about another calibration names it and leaves the first place to th
 });
 
 test("a calibration that fits inverted is named first in the advice on it", async ({ lab, page }) => {
-  await answerChecks(page, "off", undefined, inverted("told"));
+  await answerChecks(page, "off", undefined, inverted("given"));
   await check(page);
-  await expect(next(page)).toHaveText("Next: Invert “told” in step 2 and check again: it seems to be the inverse.");
+  await expect(next(page)).toHaveText("Next: Invert “given” in step 2 and check again: it seems to be the inverse.");
   await expect(page.getByText("which this verdict is not about")).toHaveCount(0);
   expect(lab.complaints).toEqual([]);
 });
@@ -56,12 +56,12 @@ test("a best fit that is itself too uncertain is not offered in place of a calib
   });
   await check(page);
   await expect(next(page)).toHaveText(
-    `Next: Do not use the best fit instead of “told”: it is itself too uncertain, 23.90 px (95 %: 1.10 to 63.10 px; the limit is 3.5 px). ${message}`,
+    `Next: Do not use the best fit instead of “given”: it is itself too uncertain, 23.90 px (95 %: 1.10 to 63.10 px; the limit is 3.5 px). ${message}`,
   );
   await expect(page.getByText(message)).toHaveCount(2);
   await expect(page.getByText("Save the calibration found here")).toHaveCount(0);
-  expect(await saved(page).allTextContents()).toEqual(["told", "other"]);
-  await expect(page.getByLabel("Calibration", { exact: true })).toHaveValue("told");
+  expect(await saved(page).allTextContents()).toEqual(["given", "other"]);
+  await expect(page.getByLabel("Calibration", { exact: true })).toHaveValue("given");
   await expect(page.getByText("is not offered here, because it is too uncertain to use")).toBeVisible();
   expect(lab.complaints).toEqual([]);
 });
@@ -80,22 +80,22 @@ test("an estimate that is too uncertain says so, also where it is saved", async 
 });
 
 test("a calibration beyond a curve is marked, and a minimum at its end is a warning", async ({ lab, page }) => {
-  const { candidates, sensitivity } = reportOf("off", ["told"], []);
-  const told = { ...candidates.told, offAxes: [9.5, 2.04, 0, 0, 0, -80] } as (typeof candidates)[string];
+  const { candidates, sensitivity } = reportOf("off", ["given"], []);
+  const given = { ...candidates.given, offAxes: [9.5, 2.04, 0, 0, 0, -80] } as (typeof candidates)[string];
   // About z the loss falls to the end of the chart, which the wide interval contains. Along x nothing is seen.
   const values = ({ axis, offsets, values }: (typeof sensitivity)[number]) =>
     axis === "rz" ? offsets.map((x) => x) : axis === "tx" ? offsets.map(() => 7) : values;
   const covariance = Array.from({ length: 36 }, (_, i) => (i % 7 === 0 ? 0.01 : 0));
   await answerChecks(page, "off", undefined, {
     covariance,
-    candidates: { told },
+    candidates: { given },
     sensitivity: sensitivity.map((each) => ({ ...each, values: values(each) })),
   });
   await check(page);
   const curve = (title: string) => page.locator(".rig-curves figure", { hasText: title });
-  await expect(curve("Rotation about x")).toContainText("“told” at 9.50°, beyond the end of the chart (arrow)");
-  await expect(curve("Rotation about y")).toContainText(/“told” at 2\.04°$/);
-  await expect(curve("Shift along z")).toContainText("“told” at −80.0 mm, beyond the end of the chart (arrow)");
+  await expect(curve("Rotation about x")).toContainText("“given” at 9.50°, beyond the end of the chart (arrow)");
+  await expect(curve("Rotation about y")).toContainText(/“given” at 2\.04°$/);
+  await expect(curve("Shift along z")).toContainText("“given” at −80.0 mm, beyond the end of the chart (arrow)");
   await expect(curve("Rotation about z")).toContainText("Minimum at 5.00° or beyond");
   await expect(curve("Rotation about z")).toContainText("the minimum lies at the end of the chart, so do not trust it");
   await expect(curve("Shift along x")).toContainText("Minimum at 0.0 mm;");
@@ -114,11 +114,13 @@ test("nothing is said of correlation where a value lies outside its own interval
 });
 
 test("a verdict that warnings cap has one word in the headline and in its row", async ({ lab, page }) => {
-  const { candidates } = reportOf("consistent", ["told"], []);
+  const { candidates } = reportOf("consistent", ["given"], []);
   await answerChecks(page, "undecided", undefined, { candidates, code: "doubtful", ...inverted("other") });
   await check(page);
   await expect(page.locator(".rig-word")).toHaveText("Undecided, see warnings");
-  const row = page.locator(".rig-calibrations tbody tr").filter({ has: page.getByRole("rowheader", { name: "told" }) });
+  const row = page
+    .locator(".rig-calibrations tbody tr")
+    .filter({ has: page.getByRole("rowheader", { name: "given" }) });
   await expect(row).toContainText("Undecided");
   await expect(row).not.toContainText("Consistent");
   await expect(page.locator(".rig-verdict p").first()).toContainText("It would be consistent without the warnings. ");

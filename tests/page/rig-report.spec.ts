@@ -58,9 +58,9 @@ test("the report begins with the page's verdict, and its command gives the same 
 });
 
 test("no matrix covers the table of unknowns or is cut, on a screen or on A4", async ({ page }) => {
-  const report = reportOf("off", ["told"], ["frame 1"]);
-  const told = { ...report.estimate, translation: [-0.12345, 0.0123, 0.03] };
-  await page.setContent(reportHtml(report, [], { calibrations: { told } }));
+  const report = reportOf("off", ["given"], ["frame 1"]);
+  const given = { ...report.estimate, translation: [-0.12345, 0.0123, 0.03] };
+  await page.setContent(reportHtml(report, [], { calibrations: { given } }));
   /** Cells beyond the window, cells under a matrix, and matrices wider than their boxes. */
   const faults = () =>
     page.evaluate(() => {

@@ -181,7 +181,7 @@ test("the overlay moves between the calibration in question and the one found", 
         .data.reduce((sum, value) => (sum * 31 + value) % 1_000_003, 7),
     );
   const slider = page.getByRole("slider", { name: "Calibration shown" });
-  await expect(layer).toHaveAttribute("aria-label", /frame 1, calibration: told/);
+  await expect(layer).toHaveAttribute("aria-label", /frame 1, calibration: given/);
   const before = await print();
   await page.locator(".rig-stops").getByRole("button", { name: "found" }).click();
   await expect(slider).toHaveAttribute("aria-valuetext", "found");

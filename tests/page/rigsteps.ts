@@ -33,7 +33,7 @@ export async function openFrames(page: Page): Promise<void> {
   await open(page);
   await giveFiles(
     page,
-    [...["0001", "0002", "0003"].flatMap(pair), matrixFile("told.txt", 0.025), matrixFile("other.txt", 0.05)],
+    [...["0001", "0002", "0003"].flatMap(pair), matrixFile("given.txt", 0.025), matrixFile("other.txt", 0.05)],
     3,
   );
 }

@@ -114,11 +114,13 @@ export function advise(run: Run): string[] {
   const isOpen = report.verdict === "undecided" && Object.values(report.candidates)[0]?.verdict === "undecided";
   const confirm = guessed.length > 0 ? [`Confirm the guess in step 1: ${guessed.join("; ")}.`] : [];
   if (!isOpen) list.push(...confirm);
-  if (!estimateOnly && report.code === "misread")
+  const isMisread = report.code === "misread";
+  const isReplaced = !estimateOnly && report.verdict === "off" && !isMisread && isUsable(run);
+  if (!estimateOnly && isMisread)
     list.push(
       `Find out how the file of “${name}” was written. If in the convention that the verdict names, convert it and check again; otherwise treat “${name}” as off.`,
     );
-  else if (!estimateOnly && report.verdict === "off" && isUsable(run)) list.push(replace(run, name));
+  else if (isReplaced) list.push(replace(run, name));
   // Such a warning keeps the verdict from "consistent".
   if (report.code === "doubtful") list.push(...others.splice(0));
   if (!isUsable(run))
@@ -140,20 +142,16 @@ export function advise(run: Run): string[] {
         ? "Add two more frames, with the object turned by about 30° each time."
         : "Add another frame, with the object turned by about 30°.",
     );
-  const proposal = report.next?.message ?? "";
-  if (proposal && !list.some((advice) => advice.includes(proposal))) list.push(proposal);
+  // Advice against an uncertain best fit already has the frame to take next.
+  if (report.next && !(isReplaced && isUncertain(run))) list.push(report.next.message);
   if (isOpen) list.push(...confirm);
   const mean = 1 / Math.max(1, report.frames.length);
   for (const { name, share, note } of report.frames)
     if (report.frames.length > 1 && share < LITTLE * mean)
       list.push(`Retake ${name}: it contributes little (${(100 * share).toFixed(0)} %)${note ? `, ${note}` : ""}.`);
-  if (!estimateOnly && report.verdict === "consistent")
-    list.push(`Keep “${name}”, and check again after the rig has been moved, knocked or heated.`);
-  list.push(...others);
-  const keep = list.findIndex((advice) => advice.startsWith("Keep “"));
-  return keep > 0 && guessed.length + doubts.length === 0
-    ? [...list.slice(keep, keep + 1), ...list.slice(0, keep), ...list.slice(keep + 1)]
-    : list;
+  const isKept = !estimateOnly && report.verdict === "consistent";
+  const keep = isKept ? [`Keep “${name}”, and check again after the rig has been moved, knocked or heated.`] : [];
+  return guessed.length + doubts.length === 0 ? [...keep, ...list, ...others] : [...list, ...keep, ...others];
 }
 
 export function card(run: Run): HTMLElement {

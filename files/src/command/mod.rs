@@ -114,7 +114,7 @@ fn check(arguments: &Arguments, terminal: &mut Terminal<'_>) -> std::result::Res
         let reason = format!("it contains no readable pair of a colour image and a depth map{first}");
         return Err(Problem::file(folder, reason).into());
     }
-    call(&mut frames);
+    name_by_number(&mut frames);
     let run = CalibrationCheck::new(frames, poses, &arguments.cues).map_err(|error| Problem::of_check(&error))?;
     let report = finished(run, terminal)?;
     let mut all = Warnings::default();
@@ -134,8 +134,8 @@ fn check(arguments: &Arguments, terminal: &mut Terminal<'_>) -> std::result::Res
     })
 }
 
-/// Names frames whose names are numbers alone, as on the page: "0: 48 % .." would read like a number.
-fn call(frames: &mut [RigView]) {
+/// Renames frames whose names are numbers alone, because "0: 48 % .." is hard to read. The number of the file stays in parentheses.
+fn name_by_number(frames: &mut [RigView]) {
     for (index, frame) in frames.iter_mut().enumerate() {
         if !frame.name.is_empty() && frame.name.bytes().all(|byte| byte.is_ascii_digit()) {
             frame.name = format!("frame {} ({})", index + 1, frame.name);
