@@ -190,7 +190,6 @@ impl CalibrationCheck {
     fn candidate_reports(&self, judge: &Judge, best: &Optimum, covariance: &Matrix) -> Vec<CandidateReport> {
         let estimate = best.round.state;
         let weakest = judge.weakest(covariance);
-        let is_seen = self.scene.is_seen(&estimate);
         let overlap = self.scene.overlap(&estimate);
         let is_silent = best.findings.cues.iter().all(|(.., weight)| *weight == 0.0);
         let report = |(name, candidate): &(String, State)| {
