@@ -6,6 +6,9 @@ const WITHIN = { degrees: 10, millimetres: 100 };
 /** The 95 % quantile of chi-squared with six degrees of freedom. */
 const INSIDE = 12.59;
 
+/** Whether a report states an estimate: one that found no pose which puts points onto the image states none. */
+const isSure = ({ verdict, code }) => verdict !== "undecided" && code !== "no-pose-on-image";
+
 /** Checks frames from candidates at random distances of their true pose; one row for each. */
 export async function restarts(check, frames, truth, { number, random }) {
   const reports = [];
@@ -14,14 +17,15 @@ export async function restarts(check, frames, truth, { number, random }) {
     const candidate = wrong(truth, { degrees, millimetres }, random.direction);
     reports.push({ start: { degrees, millimetres }, ...(await check(frames, { candidate })) });
   }
-  const sure = reports.filter(({ verdict }) => verdict !== "undecided");
+  const sure = reports.filter(isSure);
   const holds = (one) => (other) =>
     mahalanobis(one.covariance, offset(other.estimate, one.estimate, one.middle)) <= INSIDE;
   return reports.map((report) => ({
     start: report.start,
     verdict: report.verdict,
+    code: report.code,
     ...sizes(offset(report.estimate, truth, report.middle)),
-    agrees: report.verdict === "undecided" || sure.every(holds(report)),
+    agrees: !isSure(report) || sure.every(holds(report)),
   }));
 }
 
@@ -30,8 +34,9 @@ export function printRestarts(scenes) {
   const rows = scenes.flatMap(({ runs }) => runs);
   const agreeing = ({ runs }) => runs.every(({ agrees }) => agrees);
   for (const { name, runs } of scenes.filter((scene) => !agreeing(scene))) {
-    const sure = runs.filter(({ verdict }) => verdict !== "undecided");
-    const ends = sure.map(({ degrees, millimetres }) => `${degrees.toFixed(2)} deg ${millimetres.toFixed(1)} mm`);
+    const ends = runs
+      .filter(isSure)
+      .map(({ degrees, millimetres }) => `${degrees.toFixed(2)} deg ${millimetres.toFixed(1)} mm`);
     console.log(`  ${name}: decided verdicts end ${ends.join(", ")} from the truth`);
   }
   const is = (verdict) => rows.filter((row) => row.verdict === verdict).length;

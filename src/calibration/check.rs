@@ -178,6 +178,7 @@ impl CalibrationCheck {
     pub fn step(&mut self) -> bool {
         self.stage = match std::mem::replace(&mut self.stage, Stage::Done) {
             Stage::Starting => {
+                self.scene.prior_width = self.passes.prior_width();
                 self.passes.find_starts(&self.scene);
                 Stage::Approaching { level: 0, index: 0, planes: self.planes_of(0) }
             }

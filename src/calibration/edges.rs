@@ -13,6 +13,9 @@
 //! and a discontinuity in front of texture has little weight. The levels go from wide windows on a blurred image to
 //! narrow ones. Each round finds the edges anew and takes a Gauss-Newton step with the responsibilities (expectation
 //! maximisation).
+//!
+//! No discontinuity lowers l, so a pose gains by bringing more of them onto texture. Where poses are compared, the mean
+//! of each term over all shifts of its edges is subtracted: what the term has by chance.
 
 use super::discontinuities::{self, Discontinuity};
 use super::evidence::{Share, Tiles};
@@ -20,7 +23,7 @@ use super::frame::{Frame, Projection};
 use super::patches::Sight;
 use super::planes::Planes;
 use super::unknowns::{BIAS, SIDES, State, Units, Vector, add_square};
-use crate::numeric::quantile;
+use crate::numeric::{quantile, sort_descending};
 use crate::view::Size;
 
 /// e, the share of depth discontinuities whose edge is not visible in the image.
@@ -57,9 +60,35 @@ struct Profile {
     edges: Vec<(f64, f64)>,
 }
 
+impl Profile {
+    /// Density of an edge that is not visible, and the greatest density of a visible one.
+    fn densities(&self) -> [f64; 2] {
+        [MISSING / (2.0 * self.window), (1.0 - MISSING) / (self.sigma * std::f64::consts::TAU.sqrt())]
+    }
+
+    /// Mean of the log likelihood over all shifts of the edges, in steps of about one standard deviation. The window is taken as a
+    /// circle.
+    fn by_chance(&self) -> f64 {
+        let [background, peak] = self.densities();
+        let width = 2.0 * self.window;
+        let steps = (width / self.sigma).ceil();
+        let at = |shift: f64| {
+            let density = |&(offset, share): &(f64, f64)| {
+                let around = if offset + shift > self.window { width } else { 0.0 };
+                let error = (offset + shift - around) / self.sigma;
+                share * (-0.5 * error * error).exp()
+            };
+            (1.0 + peak / background * self.edges.iter().map(density).sum::<f64>()).ln()
+        };
+        (0..steps as usize).map(|step| at((step as f64 + 0.5) / steps * width)).sum::<f64>() / steps
+    }
+}
+
 /// The depth discontinuities of one frame with their profiles, for one state.
 pub(super) struct EdgeField {
     profiles: Vec<Profile>,
+    /// Number of tiles of the image.
+    tiles: usize,
 }
 
 /// Blur of the image, in pixels, for edges whose positions have an error of `sigma` pixels.
@@ -132,18 +161,18 @@ impl EdgeField {
                 edges,
             })
         };
-        Self { profiles: discontinuities.iter().filter_map(profile).collect() }
+        Self { profiles: discontinuities.iter().filter_map(profile).collect(), tiles: tiles.count() }
     }
 
-    /// Adds the log likelihood and its gradient at the state of the field, tile by tile. The curvature is that of the
+    /// The log likelihood and its gradient at the state of the field, tile by tile. The curvature is that of the
     /// bound of expectation maximisation, which is never negative. A factor reduces it, because discontinuities may
     /// change their edges.
-    pub fn evidence(&self, shares: &mut [Share]) {
+    pub fn shares(&self) -> Vec<Share> {
+        let mut shares = vec![Share::none(); self.tiles];
         let (mut bounds, mut own) = (0.0, 0.0);
         for profile in &self.profiles {
             let sigma = profile.sigma;
-            let background = MISSING / (2.0 * profile.window);
-            let peak = (1.0 - MISSING) / (sigma * std::f64::consts::TAU.sqrt());
+            let [background, peak] = profile.densities();
             let (mut total, mut first, mut second) = (0.0, 0.0, 0.0);
             for &(offset, share) in &profile.edges {
                 let error = offset / sigma;
@@ -166,6 +195,16 @@ impl EdgeField {
         // Without discontinuities the curvature is zero, and its factor is arbitrary.
         let left = if bounds > 0.0 { (own / bounds).clamp(LEAST_LEFT, 1.0) } else { 1.0 };
         shares.iter_mut().for_each(|share| share.curvature *= left);
+        shares
+    }
+
+    /// What the log likelihood of each tile has by chance: its mean over all shifts of the edges.
+    pub fn by_chance(&self) -> Vec<f64> {
+        let mut tiles = vec![0.0; self.tiles];
+        for profile in &self.profiles {
+            tiles[profile.tile as usize] += profile.weight * profile.by_chance();
+        }
+        tiles
     }
 
     /// The discontinuities for which edges were searched.
@@ -176,7 +215,7 @@ impl EdgeField {
     /// The same edges with other derivatives, without the discontinuities that have none.
     pub fn carried(&self, row: impl Fn(&Discontinuity) -> Option<Vector>) -> Self {
         let carried = |profile: &Profile| Some(Profile { row: row(&profile.discontinuity)?, ..profile.clone() });
-        Self { profiles: self.profiles.iter().filter_map(carried).collect() }
+        Self { profiles: self.profiles.iter().filter_map(carried).collect(), tiles: self.tiles }
     }
 
     pub fn len(&self) -> usize {
@@ -233,9 +272,48 @@ fn edges(planes: &Planes, start: [f64; 2], normal: [f64; 2], window: f64, blur: 
             ((k as f64 + shift - (half + 1) as f64) * pace, b)
         })
         .collect();
-    edges.sort_by(|a, b| b.1.total_cmp(&a.1));
+    sort_descending(&mut edges, |edge| edge.1);
     edges.truncate(MOST_EDGES);
     let total: f64 = edges.iter().map(|edge| edge.1).sum();
     edges.iter_mut().for_each(|edge| edge.1 /= total);
     Some(edges)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::random::Random;
+
+    /// Mean log likelihood, less that by chance, of discontinuities with these offsets and shares of edges.
+    fn mean(edges: Vec<Vec<(f64, f64)>>) -> f64 {
+        let discontinuity = Discontinuity { index: 0, pixel: [0.0; 2], normal: [1.0, 0.0], gap: 1.0, in_gap: 1.0 };
+        let common = Profile {
+            discontinuity,
+            row: Vector::zeros(),
+            sigma: 1.3,
+            window: WIDEST,
+            weight: 1.0,
+            tile: 0,
+            edges: vec![],
+        };
+        let profiles: Vec<Profile> = edges.into_iter().map(|edges| Profile { edges, ..common.clone() }).collect();
+        let field = EdgeField { profiles, tiles: 1 };
+        (field.shares()[0].value - field.by_chance()[0]) / field.len() as f64
+    }
+
+    #[test]
+    fn discontinuities_on_texture_gain_nothing_unless_one_of_the_edges_is_theirs() {
+        let mut random = Random::new(3, 0);
+        for count in [0, 1, 3, 12] {
+            let mut texture = |own: &[f64]| -> Vec<(f64, f64)> {
+                let anywhere = (0..count).map(|_| WIDEST * (2.0 * random.uniform() - 1.0));
+                let share = 1.0 / (count + own.len()) as f64;
+                own.iter().copied().chain(anywhere).map(|offset| (offset, share)).collect()
+            };
+            let by_chance = mean((0..4000).map(|_| texture(&[])).collect());
+            let matched = mean((0..4000).map(|_| texture(&[0.5])).collect());
+            assert!(by_chance.abs() < 0.04, "{count}: {by_chance}");
+            assert!(matched > 0.2, "{count}: {matched}");
+        }
+    }
 }

@@ -49,22 +49,13 @@ impl Scene {
 mod tests {
     use super::*;
     use crate::calibration::cue::Cue;
-    use crate::calibration::frame::Frame;
-    use crate::calibration::planes::Planes;
+    use crate::calibration::simulated;
     use crate::pose::Similarity;
-    use crate::view::{Lens, Pinhole, Size};
+    use crate::view::Size;
 
     fn scene() -> Scene {
-        let camera = Pinhole { fx: 60.0, fy: 60.0, cx: 31.5, cy: 23.5, lens: Lens::None };
-        let size = Size { width: 64, height: 48 };
-        let point = |index: usize| {
-            let (column, row) = size.position(index);
-            let z = if column < 32 { 1.0 } else { 2.0 };
-            [(column as f64 - camera.cx) / camera.fx * z, (row as f64 - camera.cy) / camera.fy * z, z].map(|v| v as f32)
-        };
-        let planes = Planes { size, pixels: vec![[0.5; 3]; size.len()] };
-        let frame = Frame::new(String::new(), planes, camera, size, (0..size.len()).map(point).collect());
-        Scene::new(vec![frame], Cue::ALL.to_vec(), false)
+        let depth = |[column, _]: [usize; 2]| if column < 32 { 1.0 } else { 2.0 };
+        simulated::scene(Size { width: 64, height: 48 }, 60.0, depth, |_| 0.5, &Cue::ALL)
     }
 
     #[test]

@@ -64,6 +64,8 @@ mod sensitivity;
 mod serialised;
 mod shading;
 mod silhouette;
+#[cfg(test)]
+mod simulated;
 mod surface;
 mod surfaces;
 mod unknowns;

@@ -15,7 +15,7 @@ use super::cue::Cue;
 use super::discontinuities::Discontinuity;
 use super::distribution::{PoseMatrix, VARIANCE};
 use super::edges::EdgeField;
-use super::evidence::{Evidence, Share, Tiles};
+use super::evidence::{Evidence, Tiles};
 use super::frame::{Frame, Projection};
 use super::patches::Sight;
 use super::planes::Planes;
@@ -135,7 +135,6 @@ struct Hypothesis<'a> {
     weight: f64,
     /// Evidence of the other cues, weighted.
     others: Evidence,
-    tiles: usize,
 }
 
 impl<'a> Hypothesis<'a> {
@@ -166,7 +165,7 @@ impl<'a> Hypothesis<'a> {
         let sight = Sight { frame, planes: planes.get(index)? };
         let field = EdgeField::new(sight, &discontinuities, &round.state, &findings.units, round.sigma);
         let is_told = weight > 0.0 && field.len() > 0;
-        is_told.then_some(Self { frame, round, units: &findings.units, field, weight, others, tiles: range.len() })
+        is_told.then_some(Self { frame, round, units: &findings.units, field, weight, others })
     }
 
     fn motions(&self) -> Vec<(NextMotion, Similarity)> {
@@ -201,8 +200,7 @@ impl<'a> Hypothesis<'a> {
 
     /// All evidence with that of the frame after a motion of its scene.
     fn total(&self, total: &Evidence, motion: &Similarity) -> Option<Evidence> {
-        let mut shares = vec![Share::none(); self.tiles];
-        self.field.carried(|discontinuity| self.row(discontinuity, motion)).evidence(&mut shares);
+        let shares = self.field.carried(|discontinuity| self.row(discontinuity, motion)).shares();
         let mut moved = self.others.clone();
         Evidence { shares }.add_to(&mut moved, self.weight);
         let mut all = total.clone();
@@ -234,29 +232,16 @@ impl<'a> Hypothesis<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::calibration::simulated;
     use crate::calibration::unknowns::Matrix;
-    use crate::view::{Lens, Pinhole, Size};
+    use crate::view::Size;
 
-    const SIZE: Size = Size { width: 96, height: 72 };
-    const FOCAL: f64 = 80.0;
-
-    /// A bright square at 0.8 m in front of a dark wall at twice this distance, in an image and a depth map of one
-    /// raster.
+    /// A bright square at 0.8 m in front of a dark wall at twice this distance.
     fn square() -> Scene {
-        let camera = Pinhole { fx: FOCAL, fy: FOCAL, cx: 47.5, cy: 35.5, lens: Lens::None };
-        let is_near = |index: usize| {
-            let (column, row) = SIZE.position(index);
-            (38..58).contains(&column) && (26..46).contains(&row)
-        };
-        let point = |index: usize| {
-            let (column, row) = SIZE.position(index);
-            let z = if is_near(index) { 0.8 } else { 1.6 };
-            [(column as f64 - 47.5) / FOCAL * z, (row as f64 - 35.5) / FOCAL * z, z].map(|value| value as f32)
-        };
-        let grey = |index: usize| [if is_near(index) { 0.9 } else { 0.1 }; 3];
-        let planes = Planes { size: SIZE, pixels: (0..SIZE.len()).map(grey).collect() };
-        let frame = Frame::new("square".into(), planes, camera, SIZE, (0..SIZE.len()).map(point).collect());
-        Scene::new(vec![frame], vec![Cue::Edges], false)
+        let is_near = |[column, row]: [usize; 2]| (38..58).contains(&column) && (26..46).contains(&row);
+        let depth = |place| if is_near(place) { 0.8 } else { 1.6 };
+        let grey = |place| if is_near(place) { 0.9 } else { 0.1 };
+        simulated::scene(Size { width: 96, height: 72 }, 80.0, depth, grey, &[Cue::Edges])
     }
 
     /// The curvature of the evidence before a motion, and what the moved frame adds to it.

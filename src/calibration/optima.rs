@@ -13,6 +13,7 @@ use super::readings::Reading;
 use super::registration::{Findings, Round, Scene};
 use super::unknowns::{POSE, State};
 use super::verdict::Judge;
+use crate::numeric::sort_descending;
 
 /// Two poses count as the same if the scene moves by less than this between them, pixels of an image 640 wide.
 pub(super) const SAME_START: f64 = 1.5;
@@ -125,7 +126,7 @@ pub(super) fn rank(optima: &mut [Optimum]) {
     let Some(first) = optima.iter().min_by(|a, b| own(b).total_cmp(&own(a))) else { return };
     let weights = first.findings.weights();
     let fit = |optimum: &Optimum| Fit::of(&optimum.findings, &weights);
-    optima.sort_by(|a, b| fit(b).posterior.total_cmp(&fit(a).posterior));
+    sort_descending(optima, |optimum| fit(optimum).posterior);
     let best = fit(&optima[0]);
     optima.iter_mut().for_each(|optimum| optimum.compare(&best, &weights));
 }

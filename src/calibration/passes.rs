@@ -1,19 +1,20 @@
 //! The passes of the search for optima.
 //!
 //! The first pass looks about the first candidate, as far as the prior suggests. If the frames contradict that candidate, the prior says
-//! little about where the optimum lies, so the second pass looks twice as far. Further passes begin at the estimate, until it stays.
-//! Every pass registers the optima of the last one anew, through all levels, because where a registration ends also depends on where it
-//! began. The prior stays centred on the first candidate, so the posteriors of all passes are comparable.
+//! less about where the optimum lies: its sigmas are twice as large in all further passes, and the second pass looks twice as far. The next
+//! ones begin at the estimate, until it stays. Every pass registers the optima of the last one anew, through all levels, because where a
+//! registration ends also depends on where it began. The prior stays centred on the first candidate.
 
 use super::optima::{Optimum, SAME_START};
 use super::registration::{Round, Scene, Start};
 use super::search;
 use super::unknowns::{State, Units};
+use crate::numeric::sort_descending;
 
-/// Distance to which a pass looks, sigmas of the prior.
+/// Distance to which the first two passes look, sigmas of the prior.
 const REACH: f64 = 1.5;
-/// Distance to which the second pass looks, sigmas of the prior: candidates that are off by ten degrees are 2.5 sigmas away.
-const FAR: f64 = 3.0;
+/// Factor on the sigmas of the prior once the frames contradict the candidate: errors of ten degrees are 2.5 sigmas of the first prior.
+const WIDER: f64 = 2.0;
 /// Share of a pass in the work that is left, by which progress grows.
 const OF_PASS: f64 = 0.7;
 /// Maximum number of passes.
@@ -47,10 +48,15 @@ impl Passes {
         1.0 - left * (1.0 - OF_PASS * share)
     }
 
+    /// Factor on the sigmas of the prior in the current pass.
+    pub const fn prior_width(&self) -> f64 {
+        if self.done == 0 { 1.0 } else { WIDER }
+    }
+
     /// Finds the initial poses: those of the coarse search, the poses that are known, and the inverse of the first candidate.
     pub fn find_starts(&mut self, scene: &Scene) {
         self.is_due = false;
-        let reach = if self.done == 1 { FAR } else { REACH };
+        let reach = if self.done > 1 { REACH / WIDER } else { REACH };
         let (discontinuities, states) = search::starts(scene, &self.centre, reach);
         let start = |state| Start {
             round: Round { seen_from: self.centre, ..Round::from(state, self.initial) },
@@ -74,7 +80,7 @@ impl Passes {
 
     /// Keeps the best poses that differ from each other, at most `most`.
     pub fn keep_apart(&mut self, scene: &Scene, most: usize) {
-        self.starts.sort_by(|a, b| b.score.total_cmp(&a.score));
+        sort_descending(&mut self.starts, |start| start.score);
         for start in std::mem::take(&mut self.starts) {
             if self.starts.len() < most && !self.is_started(scene, &start.round.state) {
                 self.starts.push(start);
@@ -138,9 +144,10 @@ mod tests {
     use crate::calibration::cue::Cue;
     use crate::calibration::evidence::{Evidence, Share};
     use crate::calibration::registration::Findings;
-    use crate::calibration::unknowns::{Matrix, Units, Vector};
+    use crate::calibration::simulated;
+    use crate::calibration::unknowns::{Matrix, POSE, Units, Vector};
     use crate::pose::Similarity;
-    use crate::view::{Lens, Pinhole};
+    use crate::view::{Lens, Pinhole, Size};
     use nalgebra::Vector3;
 
     fn at(x: f64) -> State {
@@ -169,11 +176,11 @@ mod tests {
         let mut passes = Passes::new(at(0.0), vec![at(0.0)]);
         let is_off = |from: f64| move |state: &State| (state.pose.translation.x - from).abs() > 0.1;
         passes.plan(&[optimum(0.05, 0.0)], is_off(0.05));
-        assert!(passes.is_first() && !passes.is_due(), "the candidate may be right");
+        assert!(passes.is_first() && !passes.is_due() && passes.prior_width() == 1.0, "the candidate may be right");
         // The third optimum is excluded.
         passes.plan(&[optimum(0.3, 0.0), optimum(0.1, 5.0), optimum(0.0, 90.0)], is_off(0.3));
         let known: Vec<f64> = passes.known.iter().map(|state| state.pose.translation.x).collect();
-        assert!(passes.is_first() && passes.is_due());
+        assert!(passes.is_first() && passes.is_due() && passes.prior_width() == WIDER);
         assert_eq!((known, passes.centre.pose.translation.x), (vec![0.3, 0.1], 0.0));
         passes.is_due = false;
         passes.plan(&[optimum(0.5, 0.0)], is_off(0.5));
@@ -200,5 +207,18 @@ mod tests {
                 last = progress;
             }
         }
+    }
+
+    #[test]
+    fn once_contradicted_the_candidate_has_a_prior_that_is_wider_about_its_pose_alone() {
+        let mut scene = simulated::scene(Size { width: 64, height: 48 }, 60.0, |_| 1.0, |_| 0.5, &[Cue::Edges]);
+        let units = scene.units(&at(0.0));
+        let first = scene.prior(&units);
+        scene.prior_width = WIDER;
+        let second = scene.prior(&units);
+        let (pose, others) = ((0, 0), (POSE, POSE));
+        let of_pose = |prior: &Matrix| prior.fixed_view::<POSE, POSE>(0, 0).into_owned();
+        assert!((of_pose(&first) - of_pose(&second) * WIDER.powi(2)).norm() < 1e-9 * first[pose]);
+        assert_eq!(first[others], second[others]);
     }
 }

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use super::cue::Cue;
 use super::discontinuities::Discontinuity;
 use super::edges::{EdgeField, blur};
-use super::evidence::{Evidence, Share, Tiles, Traces};
+use super::evidence::{Evidence, Traces};
 use super::frame::{Frame, Projection};
 use super::patches::{Patches, Sight, group};
 use super::planes::Planes;
@@ -77,6 +77,8 @@ pub(super) struct Scene {
     pub focal_is_free: bool,
     /// The first image's width over 640, at least one.
     pub scale: f64,
+    /// Factor on the sigmas of the prior about the pose.
+    pub prior_width: f64,
 }
 
 /// A round of the registration: a state, the initial state on which the prior is centred, the sigma of edges, and the sums
@@ -157,7 +159,7 @@ impl Scene {
         let blur = if has_surfaces { SURFACE_BLUR } else { 0.0 };
         let surface_planes = frames.iter().map(|frame| frame.planes.blurred(blur)).collect();
         let sparse = frames.iter().flat_map(|frame| frame.sparse(MOST_POINTS / frames.len())).collect();
-        Self { frames, samples, sparse, surface_planes, cues, focal_is_free, scale }
+        Self { frames, samples, sparse, surface_planes, cues, focal_is_free, scale, prior_width: 1.0 }
     }
 
     /// Some points of all frames in the colour camera's frame.
@@ -197,10 +199,11 @@ impl Scene {
     pub fn prior(&self, units: &Units) -> Matrix {
         let cross = units.middle.cross_matrix();
         let mut rows = Matrix::zeros();
+        let [turn, shift] = [PRIOR_DEGREES.to_radians(), PRIOR_METRES].map(|sigma| self.prior_width * sigma);
         for k in 0..3 {
-            rows[(k, k)] = 1.0 / PRIOR_DEGREES.to_radians();
-            rows[(3 + k, 3 + k)] = 1.0 / PRIOR_METRES;
-            (0..3).for_each(|j| rows[(3 + k, j)] = cross[(k, j)] / PRIOR_METRES);
+            rows[(k, k)] = 1.0 / turn;
+            rows[(3 + k, 3 + k)] = 1.0 / shift;
+            (0..3).for_each(|j| rows[(3 + k, j)] = cross[(k, j)] / shift);
         }
         rows[(BIAS, BIAS)] = 1.0 / PRIOR_BIAS;
         let may_be_registered = self.frames.iter().any(|frame| frame.may_be_registered);
@@ -234,12 +237,22 @@ impl Scene {
         self.frames.iter().zip(&self.surface_planes).zip(&seen.patches).map(of_frame).collect()
     }
 
-    /// The log likelihood of the edges of all frames at a state, with the discontinuities that a round sees.
+    /// The edges of each frame at a state, with the discontinuities that a round sees.
+    #[inline(never)]
+    fn fields(&self, round: &Round, units: &Units, planes: &[Planes], seen: &[Vec<Discontinuity>]) -> Vec<EdgeField> {
+        let field = |((frame, planes), discontinuities): ((&Frame, &Planes), &Vec<Discontinuity>)| {
+            let moved = EdgeField::moved(frame, discontinuities, &round.seen_from, &round.state);
+            EdgeField::new(Sight { frame, planes }, &moved, &round.state, units, round.sigma)
+        };
+        self.frames.iter().zip(planes).zip(seen).map(field).collect()
+    }
+
+    /// The log likelihood of the edges of all frames at a state, and the number of independent depth discontinuities.
     fn edges(&self, round: &Round, units: &Units, planes: &[Planes], seen: &[Vec<Discontinuity>]) -> (Evidence, f64) {
         let (mut evidence, mut count) = (Evidence::default(), 0.0);
-        for ((frame, planes), discontinuities) in self.frames.iter().zip(planes).zip(seen) {
-            let moved = EdgeField::moved(frame, discontinuities, &round.seen_from, &round.state);
-            count += add_edges(Sight { frame, planes }, &moved, round, units, &mut evidence);
+        for field in self.fields(round, units, planes, seen) {
+            evidence.shares.extend(field.shares());
+            count += field.weight();
         }
         (evidence, count)
     }
@@ -265,7 +278,7 @@ impl Scene {
         evidence
     }
 
-    /// The evidence of all cues at the state of a round.
+    /// The evidence of all cues at the state of a round. The log likelihoods of edges are less what they have by chance.
     pub fn findings(&self, round: &Round, planes: &[Planes]) -> Findings {
         self.findings_with(round, planes, vec![])
     }
@@ -278,7 +291,13 @@ impl Scene {
     fn findings_with(&self, round: &Round, planes: &[Planes], curvatures: Vec<Matrix>) -> Findings {
         let seen = self.seen(&round.seen_from);
         let mut curvatures = vec![curvatures; self.frames.len()];
-        self.findings_of(round, planes, &seen, &self.surfaces(round, &seen), &mut curvatures)
+        let mut findings = self.findings_of(round, planes, &seen, &self.surfaces(round, &seen), &mut curvatures);
+        if let Some((_, edges, _)) = findings.cues.iter_mut().find(|(cue, ..)| *cue == Cue::Edges) {
+            let fields = self.fields(round, &findings.units, planes, &seen.discontinuities);
+            let by_chance = fields.iter().flat_map(EdgeField::by_chance);
+            edges.shares.iter_mut().zip(by_chance).for_each(|(share, by_chance)| share.value -= by_chance);
+        }
+        findings
     }
 
     fn findings_of(
@@ -415,21 +434,6 @@ const SURFACE_TRUST: f64 = 0.25;
 /// Change of the mean log likelihood of a depth discontinuity that counts as much as one sigma of the prior.
 /// Neighbouring discontinuities share errors, so that about a hundred of the thousands in a scene are independent.
 const SCORE_PRIOR: f64 = 0.01;
-
-/// Adds the evidence of a frame's edges, and returns the number of independent depth discontinuities on its image.
-fn add_edges(
-    sight: Sight<'_>,
-    discontinuities: &[Discontinuity],
-    round: &Round,
-    units: &Units,
-    evidence: &mut Evidence,
-) -> f64 {
-    let mut shares = vec![Share::none(); Tiles::new(sight.planes.size).count()];
-    let field = EdgeField::new(sight, discontinuities, &round.state, units, round.sigma);
-    field.evidence(&mut shares);
-    evidence.shares.extend(shares);
-    field.weight()
-}
 
 fn step(total: &Evidence, prior: &Matrix, back: &Vector) -> Vector {
     let gradient = total.gradient() - prior * back;

@@ -9,6 +9,7 @@ use super::readings::Reading;
 use super::registration::{ARRIVED, MOST_SETTLING, Round, SIGMAS, Scene, Start};
 use super::unknowns::State;
 use super::verdict::TOLERANCE;
+use crate::numeric::sort_descending;
 use crate::pose::Similarity;
 
 /// Number of readings that proceed after each level, the best by score.
@@ -75,7 +76,7 @@ impl Rereading {
             self.index += 1;
             return false;
         }
-        self.starts.sort_by(|a, b| b.1.score.total_cmp(&a.1.score));
+        sort_descending(&mut self.starts, |(_, start)| start.score);
         self.starts.truncate(SURVIVORS[self.level]);
         self.level += 1;
         self.index = 0;
@@ -105,26 +106,14 @@ mod tests {
 
     use super::*;
     use crate::calibration::cue::Cue;
-    use crate::calibration::frame::Frame;
-    use crate::view::{Lens, Pinhole, Size};
-
-    /// A wall at one metre, behind a lens of 600 pixels.
-    fn scene() -> Scene {
-        let camera = Pinhole { fx: 600.0, fy: 600.0, cx: 31.5, cy: 23.5, lens: Lens::None };
-        let size = Size { width: 64, height: 48 };
-        let point = |index: usize| {
-            let (column, row) = size.position(index);
-            [(column as f64 - camera.cx) / camera.fx, (row as f64 - camera.cy) / camera.fy, 1.0].map(|v| v as f32)
-        };
-        let planes = Planes { size, pixels: vec![[0.5; 3]; size.len()] };
-        let frame = Frame::new(String::new(), planes, camera, size, (0..size.len()).map(point).collect());
-        Scene::new(vec![frame], vec![Cue::Edges], false)
-    }
+    use crate::calibration::simulated;
+    use crate::view::Size;
 
     /// Read in a smaller unit, an error of the rotation or translation would vanish with it.
     #[test]
     fn a_reading_that_shrinks_a_pose_to_nothing_is_not_tried() {
-        let scene = scene();
+        // A wall.
+        let scene = simulated::scene(Size { width: 64, height: 48 }, 600.0, |_| 1.0, |_| 0.5, &[Cue::Edges]);
         let count = |radians: f64, metres: f64, reading: Reading| {
             let rotation = Rotation3::new(Vector3::x() * radians).into_inner();
             let pose = Similarity { scale: 1.0, rotation, translation: Vector3::x() * metres };

@@ -15,6 +15,7 @@ use super::frame::Frame;
 use super::planes::Planes;
 use super::registration::Scene;
 use super::unknowns::{Matrix, State, UNKNOWNS, Units, Vector, add_square, spectral};
+use crate::numeric::descending;
 use crate::numeric::eigen::symmetric_eigen;
 
 /// Distance between neighbouring poses of the lattice: the root mean square motion of the depth discontinuities, in pixels
@@ -145,8 +146,7 @@ impl Lattice {
         let motion = squares / (rows.len() as f64).max(1.0);
         let root = spectral(&symmetric_eigen(prior)?, |value| 1.0 / value.max(f64::MIN_POSITIVE).sqrt());
         let eigen = symmetric_eigen(&(root * motion * root))?;
-        let mut order: [usize; UNKNOWNS] = std::array::from_fn(|k| k);
-        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+        let order = descending(eigen.eigenvalues.as_slice());
         // Pixels by which one sigma moves the discontinuities along each direction.
         let lengths: [f64; UNKNOWNS] =
             std::array::from_fn(|k| eigen.eigenvalues[order[k]].max(f64::MIN_POSITIVE).sqrt());
@@ -169,7 +169,7 @@ impl Lattice {
 
     /// The best places that are not neighbours, after the centre.
     fn best(&self, maps: &[EdgeMap], marks: &[Mark]) -> Vec<Place> {
-        let mut scores: Vec<(f64, Place)> = vec![];
+        let (mut scores, mut places): (Vec<f64>, Vec<Place>) = (vec![], vec![]);
         let mut pixels = vec![[0.0; 2]; marks.len()];
         let mut place = self.reach.map(|k| -k);
         loop {
@@ -180,16 +180,16 @@ impl Lattice {
             for across in -self.reach[0]..=self.reach[0] {
                 for down in -self.reach[1]..=self.reach[1] {
                     (place[0], place[1]) = (across, down);
-                    scores.push((self.score(maps, marks, &pixels, &place), place));
+                    scores.push(self.score(maps, marks, &pixels, &place));
+                    places.push(place);
                 }
             }
             let Some(next) = (2..UNKNOWNS).find(|&k| place[k] < self.reach[k]) else { break };
             place[next] += 1;
             (2..next).for_each(|k| place[k] = -self.reach[k]);
         }
-        scores.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut chosen = vec![[0; UNKNOWNS]];
-        for (_, place) in scores {
+        for place in descending(&scores).into_iter().map(|index| places[index]) {
             if chosen.iter().all(|other| squared_distance(other, &place) > APART * APART) {
                 chosen.push(place);
             }

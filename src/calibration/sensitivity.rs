@@ -2,7 +2,6 @@
 
 use super::cue::Cue;
 use super::edges::EdgeField;
-use super::evidence::{Share, Tiles};
 use super::frame::Projection;
 use super::patches::{Patches, Sight};
 use super::planes::Planes;
@@ -84,9 +83,8 @@ fn edges_along(sight: Sight<'_>, round: &Round, units: &Units, states: &[State])
     let value = |state: &State| {
         let moved = EdgeField::moved(frame, &discontinuities, &round.state, state);
         let field = EdgeField::new(Sight { frame, planes }, &moved, state, units, round.sigma);
-        let mut shares = vec![Share::none(); Tiles::new(planes.size).count()];
-        field.evidence(&mut shares);
-        shares.iter().map(|share| share.value).sum::<f64>() * discontinuities.len() as f64 / field.len().max(1) as f64
+        field.shares().iter().map(|share| share.value).sum::<f64>() * discontinuities.len() as f64
+            / field.len().max(1) as f64
     };
     states.iter().map(value).collect()
 }

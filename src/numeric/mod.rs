@@ -1,7 +1,7 @@
 //! Arithmetic. This lowest module knows nothing of images, lights or poses.
 //!
 //! [`lanes`] and [`doubles`] process several pixels side by side, with the macros of `elementwise`. [`vector`] sums
-//! over long vectors, [`eigen`] computes eigenvalues, [`order`] quantiles and thinning, [`robust`] robust weights,
+//! over long vectors, [`eigen`] computes eigenvalues, [`order`] quantiles, order and thinning, [`robust`] robust weights,
 //! [`noise`] the noise of a raster, and [`random`] numbers from a seed. [`fourier`] holds Fourier transforms,
 //! [`cosine`] the Poisson solver built on them, [`conjugate_gradient`] an iterative solver.
 
@@ -22,4 +22,4 @@ pub(crate) mod vector;
 
 pub(crate) use doubles::{DOUBLE_LANES, Doubles};
 pub(crate) use lanes::{LANES, Lanes, Mask, Real, dot};
-pub(crate) use order::{evenly_spread, quantile, thin};
+pub(crate) use order::{descending, evenly_spread, quantile, sort_descending, thin};

@@ -1,9 +1,33 @@
-//! Quantiles, and thinning of long lists.
+//! Quantiles, order by a key, and thinning of long lists.
 
 /// The value below which the `share` of `values` lies. Reorders `values`, which must hold no NaN.
 pub(crate) fn quantile(values: &mut [f32], share: f64) -> f32 {
     let rank = ((values.len() - 1) as f64 * share).round() as usize;
     *values.select_nth_unstable_by(rank, f32::total_cmp).1
+}
+
+/// Indices of the values from the largest to the smallest. Equal values keep their order.
+///
+/// This is the only sort in the check's numerics: each further instance of the standard library's would add 3 kB to its .wasm file.
+#[inline(never)]
+pub(crate) fn descending(values: &[f64]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
+    order
+}
+
+/// Sorts by a key from its largest to its smallest value. Elements of equal keys keep their order.
+pub(crate) fn sort_descending<T>(elements: &mut [T], key: impl Fn(&T) -> f64) {
+    let keys: Vec<f64> = elements.iter().map(key).collect();
+    let order = descending(&keys);
+    for (place, &from) in order.iter().enumerate() {
+        let mut from = from;
+        // The element of an earlier place was swapped to where the element of that place came from.
+        while from < place {
+            from = order[from];
+        }
+        elements.swap(place, from);
+    }
 }
 
 /// At most `most` of the indices, evenly spread.
@@ -36,6 +60,18 @@ mod tests {
             assert_eq!(quantile(&mut values.clone(), share), expected);
         }
         assert_eq!(quantile(&mut [7.0], 0.9), 7.0);
+    }
+
+    #[test]
+    fn the_largest_key_comes_first_and_equal_keys_keep_their_order() {
+        let mut random = crate::numeric::random::Random::new(5, 0);
+        for count in 0..40 {
+            let mut sorted: Vec<(f64, usize)> = (0..count).map(|k| ((6.0 * random.uniform()).floor(), k)).collect();
+            let mut expected = sorted.clone();
+            expected.sort_by(|a, b| b.0.total_cmp(&a.0));
+            sort_descending(&mut sorted, |element| element.0);
+            assert_eq!(sorted, expected);
+        }
     }
 
     #[test]
