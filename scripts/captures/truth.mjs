@@ -28,6 +28,7 @@ async function judged(check, behind, random, first) {
   return {
     ...sizes(off),
     isInside: mahalanobis(report.covariance, off) <= INSIDE,
+    isLikely: report.candidates.truth.probability >= 0.05,
     verdicts: Object.fromEntries(verdicts),
   };
 }
@@ -60,7 +61,7 @@ export function printTruths(rows) {
       const some = rows.filter((row) => row.about === about && row.half === half);
       const said = (name, verdict) => count(some, ({ verdicts }) => verdicts[name] === verdict);
       console.log(
-        `  ${about}, ${half} half: "off" in ${said("truth", "off")}, "consistent" in ${said("truth", "consistent")}; inside 95 % in ${count(some, ({ isInside }) => isInside)}`,
+        `  ${about}, ${half} half: "off" in ${said("truth", "off")}, "consistent" in ${said("truth", "consistent")}; inside 95 % in ${count(some, ({ isInside }) => isInside)} by the covariance, in ${count(some, ({ isLikely }) => isLikely)} by the distribution`,
       );
       console.log(
         `  .. calibrations that are off, called so: ${OFF.map(nameOf)

@@ -26,6 +26,7 @@
 //! | `check`, `sensitivity`, `next` | the order of all stages; curves of the cues; the frame to take next |
 //! | `report`, `serialised` | the result of a check, and its forms for serde |
 //! | `overlay` | a frame with the points and depth edges of a pose |
+//! | `simulated` | scenes for tests |
 
 mod ahead;
 mod check;

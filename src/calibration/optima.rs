@@ -19,7 +19,7 @@ use crate::numeric::sort_descending;
 pub(super) const SAME_START: f64 = 1.5;
 
 /// Standard deviations from which a difference is significant: 95 % of a normal distribution lie within them.
-const SIGNIFICANT: f64 = 1.96;
+pub(super) const SIGNIFICANT: f64 = 1.96;
 
 /// A pose refined with all cues, and the evidence at this pose.
 pub(super) struct Optimum {
@@ -71,7 +71,7 @@ impl Optimum {
     fn compare(&mut self, best: &Fit, weights: &[f64]) {
         let own = Fit::of(&self.findings, weights);
         self.behind = best.posterior - own.posterior;
-        self.scatter = best.scatter(&own);
+        self.scatter = scatter(&best.by_tile, &own.by_tile);
     }
 
     /// Probability that the best optimum fits this much better by chance, one if it is the best.
@@ -108,15 +108,14 @@ impl Fit {
         let posterior = by_tile.iter().sum::<f64>() - 0.5 * back.dot(&(prior * back));
         Self { by_tile, posterior }
     }
+}
 
-    /// Standard deviation of the difference of two log likelihoods, a sum over independent tiles. Tiles that show
-    /// nothing do not count.
-    fn scatter(&self, other: &Self) -> f64 {
-        let pairs = self.by_tile.iter().zip(&other.by_tile);
-        let differences: Vec<f64> = pairs.map(|(a, b)| a - b).filter(|value| *value != 0.0).collect();
-        let mean = differences.iter().sum::<f64>() / differences.len().max(1) as f64;
-        differences.iter().map(|value| (value - mean).powi(2)).sum::<f64>().sqrt()
-    }
+/// Standard deviation of the difference of two sums over independent tiles. Tiles that show nothing do not count.
+pub(super) fn scatter(some: &[f64], others: &[f64]) -> f64 {
+    let pairs = some.iter().zip(others);
+    let differences: Vec<f64> = pairs.map(|(a, b)| a - b).filter(|value| *value != 0.0).collect();
+    let mean = differences.iter().sum::<f64>() / differences.len().max(1) as f64;
+    differences.iter().map(|value| (value - mean).powi(2)).sum::<f64>().sqrt()
 }
 
 /// Sorts by posterior. All posteriors have the weights of one optimum, which is the best one with its own weights. A

@@ -257,6 +257,12 @@ impl Scene {
         (evidence, count)
     }
 
+    /// The share of each tile in the mean log likelihood of a depth discontinuity.
+    pub fn mean_by_tile(&self, Start { round, discontinuities, .. }: &Start, planes: &[Planes]) -> Vec<f64> {
+        let (evidence, count) = self.edges(round, &self.units(&round.state), planes, discontinuities);
+        evidence.shares.iter().map(|share| share.value / f64::max(count, 1.0)).collect()
+    }
+
     /// The log likelihood of each cue by tiles, with its derivatives at the state of a round.
     fn evidence(
         &self,

@@ -177,6 +177,8 @@ mod tests {
             let choice = Choice { best: Some(best), ..Choice::default() };
             let decision = evidence.conclude(&pair, &mut photometric, choice, None).unwrap();
             assert_eq!(decision.photometric().is_some(), is_right);
+            // Colours that a single albedo does not explain only cap the status, because the albedo is known to vary.
+            assert_eq!(decision.by_contrast, is_right);
             assert!(decision.pose().unwrap().degrees_to(&truth) < 3.0);
         }
     }
