@@ -3,7 +3,8 @@
 //!
 //! In each reading the candidate is registered by its edges, level by level. The reading with the best mean log
 //! likelihood of a depth discontinuity is taken if it is better than the estimate with the views as they are, clearly
-//! and significantly: in a sparse map a few edges change the mean. Its frames then replace those of the check, and the candidate is refined in them with all cues.
+//! and significantly: in a sparse map a few edges change the mean. Its frames then replace those of the check, and the
+//! candidate is refined in them with all cues.
 
 use super::cue::Cue;
 use super::distortion::GAIN;
