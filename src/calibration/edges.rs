@@ -14,8 +14,8 @@
 //! narrow ones. Each round finds the edges anew and takes a Gauss-Newton step with the responsibilities (expectation
 //! maximisation).
 //!
-//! No discontinuity lowers l, so a pose gains by bringing more of them onto texture. Where poses are compared, the mean
-//! of each term over all shifts of its edges is subtracted: what the term has by chance.
+//! No discontinuity lowers l, so a pose gains by bringing more of them onto texture. Where poses are compared, each term
+//! is reduced by its mean over all shifts of the edges, which is what it has by chance.
 
 use super::discontinuities::{self, Discontinuity};
 use super::evidence::{Share, Tiles};

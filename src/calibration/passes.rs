@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn once_contradicted_the_candidate_has_a_prior_that_is_wider_about_its_pose_alone() {
+    fn the_prior_about_a_contradicted_candidate_is_wider_for_its_pose_alone() {
         let mut scene = simulated::scene(Size { width: 64, height: 48 }, 60.0, |_| 1.0, |_| 0.5, &[Cue::Edges]);
         let units = scene.units(&at(0.0));
         let first = scene.prior(&units);

@@ -237,7 +237,7 @@ impl Scene {
         self.frames.iter().zip(&self.surface_planes).zip(&seen.patches).map(of_frame).collect()
     }
 
-    /// The edges of each frame at a state, with the discontinuities that a round sees.
+    /// The edges of each frame at a state, with the discontinuities that a round sees. Not inlined, to keep the .wasm file small.
     #[inline(never)]
     fn fields(&self, round: &Round, units: &Units, planes: &[Planes], seen: &[Vec<Discontinuity>]) -> Vec<EdgeField> {
         let field = |((frame, planes), discontinuities): ((&Frame, &Planes), &Vec<Discontinuity>)| {
@@ -284,7 +284,7 @@ impl Scene {
         evidence
     }
 
-    /// The evidence of all cues at the state of a round. The log likelihoods of edges are less what they have by chance.
+    /// The evidence of all cues at the state of a round. What edges have by chance is subtracted.
     pub fn findings(&self, round: &Round, planes: &[Planes]) -> Findings {
         self.findings_with(round, planes, vec![])
     }

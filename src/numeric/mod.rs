@@ -1,7 +1,7 @@
 //! Arithmetic. This lowest module knows nothing of images, lights or poses.
 //!
 //! [`lanes`] and [`doubles`] process several pixels side by side, with the macros of `elementwise`. [`vector`] sums
-//! over long vectors, [`eigen`] computes eigenvalues, [`order`] quantiles, order and thinning, [`robust`] robust weights,
+//! over long vectors, [`eigen`] computes eigenvalues, [`order`] quantiles, sorting and thinning, [`robust`] robust weights,
 //! [`noise`] the noise of a raster, and [`random`] numbers from a seed. [`fourier`] holds Fourier transforms,
 //! [`cosine`] the Poisson solver built on them, [`conjugate_gradient`] an iterative solver.
 

@@ -1,4 +1,4 @@
-//! Quantiles, order by a key, and thinning of long lists.
+//! Quantiles, sorting by a key, and thinning of long lists.
 
 /// The value below which the `share` of `values` lies. Reorders `values`, which must hold no NaN.
 pub(crate) fn quantile(values: &mut [f32], share: f64) -> f32 {
@@ -8,7 +8,7 @@ pub(crate) fn quantile(values: &mut [f32], share: f64) -> f32 {
 
 /// Indices of the values from the largest to the smallest. Equal values keep their order.
 ///
-/// This is the only sort in the check's numerics: each further instance of the standard library's would add 3 kB to its .wasm file.
+/// The check sorts only through this function, because each instance of the standard library's sort adds 3 kB to its .wasm file.
 #[inline(never)]
 pub(crate) fn descending(values: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..values.len()).collect();
